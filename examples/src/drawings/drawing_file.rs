@@ -321,7 +321,9 @@ impl DrawingFile {
             }
             Language::Thesis => {
                 digit_mm = Some(1.0 / how.counts_per_mm);
-                Box::new(thesis_ops(bytes, how.counts_per_mm))
+                Box::new(thesis_text::plot_ops(bytes, how.counts_per_mm).map(|op| {
+                    op.map_err(|error| Diagnostic::placed(error.position(), false, error.to_string()))
+                }))
             }
             Language::CammGl | Language::GpGl => {
                 let dialect = self.dialect()?;
@@ -718,30 +720,6 @@ impl Iterator for Bytes<'_> {
         self.place.pass(byte);
         Some(byte)
     }
-}
-
-fn thesis_ops(
-    mut bytes: impl Iterator<Item = u8>,
-    counts_per_mm: f64,
-) -> impl Iterator<Item = Result<PlotOp, Diagnostic>> {
-    let mut reader = Some(thesis_text::Reader::new());
-    std::iter::from_fn(move || {
-        loop {
-            let line = match bytes.next() {
-                Some(byte) => reader.as_mut()?.push(byte),
-                None => Some(reader.take()?.finish()?),
-            };
-            match line {
-                Some(Ok(thesis_text::Line::Move(pen_move))) => {
-                    return Some(Ok(pen_move.to_op(counts_per_mm)));
-                }
-                Some(Err(error)) => {
-                    return Some(Err(Diagnostic::placed(error.position(), false, error.to_string())));
-                }
-                _ => {}
-            }
-        }
-    })
 }
 
 #[cfg(test)]

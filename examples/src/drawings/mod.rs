@@ -2,6 +2,7 @@
 
 mod arrangement;
 mod diagnostics;
+mod drawing_arguments;
 mod drawing_file;
 mod font_files;
 mod language;
@@ -12,6 +13,7 @@ mod svg_text;
 
 pub use arrangement::{Arrangement, Crop, Effort, Mirror, Page};
 pub use diagnostics::Diagnostics;
+pub use drawing_arguments::DrawingArguments;
 pub use drawing_file::{Diagnostic, DrawingFile, Ops, Reading, Severity};
 pub use font_files::FontFiles;
 pub use language::Language;

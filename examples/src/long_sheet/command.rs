@@ -1,7 +1,7 @@
 //! The command line of `long_sheet`.
 
 use super::course::draw_sheet;
-use crate::drawings::{Arrangement, Language, PenLines, SvgReading};
+use crate::drawings::DrawingArguments;
 use crate::long_sheet::{CrossingSet, told_joints};
 use crate::shared::{Telling, run};
 use clap::{Parser, ValueEnum};
@@ -37,19 +37,8 @@ pub struct LongSheetCommand {
     /// Drawing in HPGL, G-code, SVG, DXF, CAMM-GL, GP-GL or the thesis' text, of any length; - is the
     /// standard input [default: a textile pattern of 30 m]
     pub(super) file: Option<PathBuf>,
-    /// What the file is written in [default: told by its contents]
-    #[arg(long, value_enum)]
-    pub(super) language: Option<Language>,
-    /// Size of a step in CAMM-GL and GP-GL, or of the unit of a DXF, mm: 25.4 for inches [default: 0.025,
-    /// 0.1, Silhouette's 0.05; what the DXF says, else 1]
-    #[arg(long, value_name = "S", value_parser = step, allow_negative_numbers = true)]
-    pub(super) step_mm: Option<f64>,
     #[command(flatten)]
-    pub(super) svg_reading: SvgReading,
-    #[command(flatten)]
-    pub(super) arrangement: Arrangement,
-    #[command(flatten)]
-    pub(super) pen_lines: PenLines,
+    pub(super) drawing: DrawingArguments,
     /// The machine's TOML file [default: machines/textile-plotter.toml]
     #[arg(long, value_name = "FILE")]
     pub(super) machine: Option<PathBuf>,
@@ -143,10 +132,6 @@ fn metres(text: &str) -> Result<f64, String> {
 
 fn chord(text: &str) -> Result<f64, String> {
     in_range(text, 0.001, 100.0)
-}
-
-fn step(text: &str) -> Result<f64, String> {
-    in_range(text, 1e-6, 1e6)
 }
 
 impl LongSheetCommand {

@@ -1,7 +1,7 @@
 //! Frame by frame, and what the joints are like.
 
 use super::command::{LongSheetCommand, MOST_FRAMES, Method};
-use crate::drawings::{Diagnostics, DrawingFile, Reading, Severity};
+use crate::drawings::{Diagnostics, Severity};
 use crate::long_sheet::{
     JointFigures, LongSheetMachine, LongSheetReport, LongSheetRun, TextilePattern, long_sheet_svg,
 };
@@ -29,11 +29,7 @@ pub(super) fn draw_sheet(arguments: &LongSheetCommand) -> Result<(), String> {
             draw(arguments, &sheet, &name, || pattern.ops())
         }
         Some(path) => {
-            let drawing = DrawingFile::open(path, arguments.language)?
-                .with_svg(&arguments.svg_reading)?
-                .arranged(&arguments.arrangement)
-                .with_pen_lines(&arguments.pen_lines)?;
-            let reading = Reading { counts_per_mm: 40.0, step_mm: arguments.step_mm, ..Reading::default() };
+            let (drawing, reading) = (arguments.drawing.open(path)?, arguments.drawing.reading());
             let mut said = Diagnostics::default();
             // Nothing is drawn of a drawing with errors: read it once before.
             for found in drawing.ops(reading)?.filter_map(Result::err) {

@@ -1,7 +1,7 @@
 //! The command line of `stepper`.
 
 use super::course::plot;
-use crate::drawings::{Arrangement, Language, PenLines, SvgReading};
+use crate::drawings::DrawingArguments;
 use crate::shared::{ExitStatus, Telling, run};
 use clap::{Parser, ValueEnum};
 use std::path::PathBuf;
@@ -31,19 +31,8 @@ pub struct StepperCommand {
     /// Drawing in HPGL, G-code, SVG, DXF, CAMM-GL, GP-GL or the thesis' text; - is the standard input
     /// [default: a spiral, hatching and letters]
     pub(super) file: Option<PathBuf>,
-    /// What the file is written in [default: told by its contents]
-    #[arg(long, value_enum)]
-    pub(super) language: Option<Language>,
-    /// Size of a step in CAMM-GL and GP-GL, or of the unit of a DXF, mm: 25.4 for inches [default: 0.025,
-    /// 0.1, Silhouette's 0.05; what the DXF says, else 1]
-    #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
-    pub(super) step_mm: Option<f64>,
     #[command(flatten)]
-    pub(super) svg_reading: SvgReading,
-    #[command(flatten)]
-    pub(super) arrangement: Arrangement,
-    #[command(flatten)]
-    pub(super) pen_lines: PenLines,
+    pub(super) drawing: DrawingArguments,
     /// The machine's TOML file [default: machines/stepper-plotter.toml]
     #[arg(long, value_name = "FILE")]
     pub(super) machine: Option<PathBuf>,

@@ -3,7 +3,7 @@
 use super::built_in::built_in;
 use super::command::{Mode, StepperCommand};
 use super::walk::{Writers, walk};
-use crate::drawings::{Diagnostic, Diagnostics, DrawingFile, Reading, Severity};
+use crate::drawings::{Diagnostic, Diagnostics, DrawingFile, Severity};
 use crate::machine::{BLOCKS, SteppedPlot};
 use crate::shared::{at, read_file, write_file};
 use crate::stepper::{DrawnExtent, PlotFigures, SpeedChart, StepFile, SteppedPreview, SteppedReport};
@@ -18,10 +18,7 @@ use std::path::Path;
 
 pub(super) fn plot(arguments: &StepperCommand) -> Result<(), String> {
     let drawing = match &arguments.file {
-        Some(path) => DrawingFile::open(path, arguments.language)?
-            .with_svg(&arguments.svg_reading)?
-            .arranged(&arguments.arrangement)
-            .with_pen_lines(&arguments.pen_lines)?,
+        Some(path) => arguments.drawing.open(path)?,
         None => DrawingFile::held("the built-in drawing", built_in().into_bytes(), None)?,
     };
     let mut said = Diagnostics::default();
@@ -34,8 +31,7 @@ pub(super) fn plot(arguments: &StepperCommand) -> Result<(), String> {
     };
     let motors = [motor(&config.x.stepper), motor(&config.y.stepper)];
     let finest = motors[0].steps_per_mm.max(motors[1].steps_per_mm);
-    let ops =
-        drawing.ops(Reading { counts_per_mm: 40.0, step_mm: arguments.step_mm, ..Reading::default() })?;
+    let ops = drawing.ops(arguments.drawing.reading())?;
     let settings = PlannerSettings { resolution_mm: 0.5 / finest, allowance_mm: 1.0 / finest, ..settings };
     let settings = match (arguments.allowance_mm, ops.digit_mm) {
         (Some(allowance_mm), _) => PlannerSettings { allowance_mm, ..settings },

@@ -30,8 +30,8 @@ pub enum ChosenController {
 }
 
 impl ChosenController {
-    /// The one that a machine's description names, at rest at the origin. What was published differs with how the motors move
-    /// the pen; ours is the same.
+    /// The one that a machine's description names, at rest at the origin. What was published differs with how
+    /// the motors move the pen; ours is the same.
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
         match (machine.config().control.controller, machine.config().kinematics.kind) {

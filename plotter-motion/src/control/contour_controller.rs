@@ -4,9 +4,10 @@ use crate::{Demand, Duty};
 
 /// What a controller of an axis is told, in encoder counts from the start of the line, and seconds.
 ///
-/// There are two answers to where the axis is. [`count`](Self::count) is the plain one: the middle of the interval that the
-/// encoder shows, up to half a count wrong. [`position`](Self::position) and [`speed`](Self::speed) are those of a
-/// [`ShaftEstimator`](super::ShaftEstimator), which knows from the times of the edges where the shaft is between them.
+/// There are two answers to where the axis is. [`count`](Self::count) is the plain one: the middle of the
+/// interval that the encoder shows, up to half a count wrong. [`position`](Self::position) and
+/// [`speed`](Self::speed) are those of a [`ShaftEstimator`](super::ShaftEstimator), which knows from the
+/// times of the edges where the shaft is between them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AxisState {
     /// Where the axis should be now, counts.
@@ -25,8 +26,8 @@ pub struct AxisState {
     pub speed: f32,
     /// What moves it beyond what the machine's description says, as far as they tell, counts/s^2.
     pub disturbance: f32,
-    /// How far the axis was behind its reference at the last edge since the last run, counts: the one thing that is measured
-    /// exactly. `None` if there was no edge.
+    /// How far the axis was behind its reference at the last edge since the last run, counts: the one thing
+    /// that is measured exactly. `None` if there was no edge.
     pub edge_error: Option<f32>,
 }
 
@@ -68,7 +69,8 @@ impl AxisState {
 /// assert_eq!(Proportional.update(&state, 1e-4).value(), 0.625);
 /// ```
 pub trait AxisController {
-    /// A line begins: what belonged to the last one may be forgotten. `duration_s` is how long the reference takes.
+    /// A line begins: what belonged to the last one may be forgotten. `duration_s` is how long the reference
+    /// takes.
     fn start(&mut self, duration_s: f32) {
         let _ = duration_s;
     }
@@ -86,14 +88,16 @@ pub struct ContourState {
     pub y: AxisState,
     /// Unit vector of the line, in counts.
     pub direction: [f32; 2],
-    /// How far the reference has come along its plan, s; it goes slower than time while the pen lags far behind.
+    /// How far the reference has come along its plan, s; it goes slower than time while the pen lags far
+    /// behind.
     pub plan_s: f32,
     /// Time since the last run, s.
     pub dt_s: f32,
 }
 
 impl ContourState {
-    /// How far beside the line the pen is, counts: positive where it would have to go to the left of its direction.
+    /// How far beside the line the pen is, counts: positive where it would have to go to the left of its
+    /// direction.
     ///
     /// ```
     /// # use plotter_motion::control::{AxisState, ContourState};

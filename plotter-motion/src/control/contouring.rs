@@ -23,20 +23,23 @@ use core::time::Duration;
 /// ```
 ///
 /// There is no slope in it, so vertical and steep lines are like any other. Position and speed between the
-/// encoder's edges come from a [`ShaftEstimator`](super::ShaftEstimator) for each axis; the voltage that the plan needs comes from
-/// the motor's equation, solved for it (Öcal, section 4.6.1). When the pen lags behind the reference, the reference slows
-/// down and finally waits: if one motor stalls, the other waits, and both go on when it is freed.
+/// encoder's edges come from a [`ShaftEstimator`](super::ShaftEstimator) for each axis; the voltage that the
+/// plan needs comes from the motor's equation, solved for it (Öcal, section 4.6.1). When the pen lags behind
+/// the reference, the reference slows down and finally waits: if one motor stalls, the other waits, and both
+/// go on when it is freed.
 ///
 /// The pen arrives when both shafts have stood within the arrival tolerance of the middle of the target's
 /// counts for the settling time; resting there, no trembling can reach an edge.
 ///
-/// It is told what its motors are, and finds out how they differ ([`ShaftEstimator`](super::ShaftEstimator)). A shaft is braked only while
-/// it surely turns, so that it does not turn round on its way: where it does, no x1 encoder tells a new edge from the last one met again.
-/// What no shaft does, crossed wires or a lost phase, it notices and tells ([`LineController::trouble`]).
+/// It is told what its motors are, and finds out how they differ ([`ShaftEstimator`](super::ShaftEstimator)).
+/// A shaft is braked only while it surely turns, so that it does not turn round on its way: where it does, no
+/// x1 encoder tells a new edge from the last one met again. What no shaft does, crossed wires or a lost
+/// phase, it notices and tells ([`LineController::trouble`]).
 ///
-/// Every line ends, on motors far from their description too. A shaft that stands while the reference waits for it is pushed harder and
-/// harder until it moves; and with the plan over, one that has not come to rest goes the last counts one by one. Only a shaft that
-/// the whole supply does not move is waited for, for as long as something holds it.
+/// Every line ends, on motors far from their description too. A shaft that stands while the reference waits
+/// for it is pushed harder and harder until it moves; and with the plan over, one that has not come to rest
+/// goes the last counts one by one. Only a shaft that the whole supply does not move is waited for, for as
+/// long as something holds it.
 ///
 /// Source of the split into along and across: Y. Koren, "Cross-Coupled Biaxial Computer Control for
 /// Manufacturing Systems" (1980).
@@ -72,12 +75,13 @@ struct Law {
     wait: Wait,
 }
 
-/// What [`Contouring`] must know of a machine: numbers that a firmware keeps in its program memory. A plan is made
-/// in `f64`, so its limits are; what the loop reckons with is `f32`.
+/// What [`Contouring`] must know of a machine: numbers that a firmware keeps in its program memory. A plan is
+/// made in `f64`, so its limits are; what the loop reckons with is `f32`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ContouringSettings {
-    /// Limits of the plan, in encoder counts of the coarser axis where the names say mm, so that no axis exceeds them.
+    /// Limits of the plan, in encoder counts of the coarser axis where the names say mm, so that no axis
+    /// exceeds them.
     pub limits: MotionLimits,
     /// How often the controller runs, us.
     pub period_us: u32,
@@ -154,7 +158,8 @@ impl ContouringSettings {
     /// ```
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
-        // An error across the line is seen on the paper, one along it is not: the loop across is the stiffer one.
+        // An error across the line is seen on the paper, one along it is not: the loop across is the stiffer
+        // one.
         const ACROSS_SHARE: f64 = 1.6;
         let config = &machine.led_motors();
         let contouring = &config.control.contouring;

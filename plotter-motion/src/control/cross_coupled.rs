@@ -4,7 +4,8 @@ use super::{ContourController, ContourState, ShaftModel};
 use crate::{Demand, Duty, Machine};
 use core::f64::consts::TAU;
 
-/// Cross-coupled control: beside what leads the two axes, the distance from the line itself is led to zero, by both motors.
+/// Cross-coupled control: beside what leads the two axes, the distance from the line itself is led to zero,
+/// by both motors.
 ///
 /// ```text
 ///        ╱ line         an axis controller sees ex and ey; that both are small does not make e small against them,
@@ -13,8 +14,9 @@ use core::f64::consts::TAU;
 ///    ╲╱ e               duty += gains * (e, de/dt, ∫e), along the normal
 /// ```
 ///
-/// Source: Y. Koren, "Cross-Coupled Biaxial Computer Control for Manufacturing Systems" (1980); Y. Koren, C. C. Lo,
-/// "Variable-Gain Cross-Coupling Controller for Contouring" (1991), for gains that follow the line's direction.
+/// Source: Y. Koren, "Cross-Coupled Biaxial Computer Control for Manufacturing Systems" (1980); Y. Koren, C.
+/// C. Lo, "Variable-Gain Cross-Coupling Controller for Contouring" (1991), for gains that follow the line's
+/// direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CrossCoupled<C> {
     axes: C,
@@ -37,8 +39,8 @@ pub struct CrossCoupledSettings {
 }
 
 impl CrossCoupledSettings {
-    /// For a machine: half of what the axes' controllers have at its bandwidth, in addition. With more, motors that are much
-    /// stronger than described begin to tremble.
+    /// For a machine: half of what the axes' controllers have at its bandwidth, in addition. With more,
+    /// motors that are much stronger than described begin to tremble.
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
         const SHARE: f32 = 0.5;

@@ -2,7 +2,8 @@
 
 use core::time::Duration;
 
-/// The acceleration of the marking board (Khan and McGinn, section 0.2.6): from `start` the drive grows by `step` every `period`, up to `most`.
+/// The acceleration of the marking board (Khan and McGinn, section 0.2.6): from `start` the drive grows by
+/// `step` every `period`, up to `most`.
 ///
 /// ```
 /// # use plotter_motion::control::DriveRamp;

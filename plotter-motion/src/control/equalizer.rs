@@ -8,19 +8,20 @@
 //!               └─▶ × (1 + trim) ─▶ motor 2 ─▶ counts 2 ──▶ ÷ wanted share ─┘
 //! ```
 
-/// What the marking board's authors wished for (section 0.2.4 of their report) and did not build: *voltages adjusted
-/// automatically until both speeds are equal*.
+/// What the marking board's authors wished for (section 0.2.4 of their report) and did not build: *voltages
+/// adjusted automatically until both speeds are equal*.
 ///
-/// A cross-coupled controller: the measured counts of both motors since the last run, over the time between, are
-/// their speeds; what it leads to zero is how far motor 1 is ahead of motor 2, which is the sum of the differences of
-/// those speeds, so that a difference that has been is made up for and does not stay as drift.
+/// A cross-coupled controller: the measured counts of both motors since the last run, over the time between,
+/// are their speeds; what it leads to zero is how far motor 1 is ahead of motor 2, which is the sum of the
+/// differences of those speeds, so that a difference that has been is made up for and does not stay as drift.
 ///
-/// Source of the coupling: Y. Koren, "Cross-Coupled Biaxial Computer Control for Manufacturing Systems" (1980).
+/// Source of the coupling: Y. Koren, "Cross-Coupled Biaxial Computer Control for Manufacturing Systems"
+/// (1980).
 ///
-/// Gains by pole placement. A motor with gear and load is of first order: its speed follows the drive with the time
-/// constant T, so trims of ∓u on both change the difference of their speeds, as a share of the wanted speed v, by
-/// T d'' = −d' + 2 v u for the lead d. With u = kd d' + kp d + ki ∫d the loop is T s³ + s² + 2v (kd s² + kp s + ki), and it has
-/// its three poles at −w for
+/// Gains by pole placement. A motor with gear and load is of first order: its speed follows the drive with
+/// the time constant T, so trims of ∓u on both change the difference of their speeds, as a share of the
+/// wanted speed v, by T d'' = −d' + 2 v u for the lead d. With u = kd d' + kp d + ki ∫d the loop is T s³ +
+/// s² + 2v (kd s² + kp s + ki), and it has its three poles at −w for
 ///
 /// ```text
 /// 2 v kd = 3 T w − 1      2 v kp = 3 T w²      2 v ki = T w³
@@ -63,8 +64,9 @@ pub struct EqualizerSettings {
 }
 
 impl Default for EqualizerSettings {
-    /// The simulated marking board: 25 ms, 3400 counts/s at 12 V; poles at 40/s, as quick as the motors themselves. At 30 mm/s
-    /// one count more or less in a run of 5 ms is then a trim of 0.15, which the motors' inertia averages.
+    /// The simulated marking board: 25 ms, 3400 counts/s at 12 V; poles at 40/s, as quick as the motors
+    /// themselves. At 30 mm/s one count more or less in a run of 5 ms is then a trim of 0.15, which the
+    /// motors' inertia averages.
     fn default() -> Self {
         Self { time_constant_s: 0.025, pole_rad_s: 40.0, full_speed_counts_s: 3400.0, most_trim: 0.5 }
     }
@@ -77,15 +79,17 @@ impl Equalizer {
         Self { settings, lead: 0.0, integral: 0.0 }
     }
 
-    /// Forgets how far either motor is ahead: a new move begins. What was learnt of the motors' difference stays.
+    /// Forgets how far either motor is ahead: a new move begins. What was learnt of the motors' difference
+    /// stays.
     pub const fn restart(&mut self) {
         self.lead = 0.0;
     }
 
     /// The factors for both drives: 1 − trim and 1 + trim.
     ///
-    /// `counts` are those of each motor since the last run, `dt_s` ago, and `wanted` is its drive, with sign; the speeds
-    /// are led to the same proportion. Nothing changes while either wants no drive, or when a number is not finite.
+    /// `counts` are those of each motor since the last run, `dt_s` ago, and `wanted` is its drive, with sign;
+    /// the speeds are led to the same proportion. Nothing changes while either wants no drive, or when a
+    /// number is not finite.
     pub fn update(&mut self, counts: [i32; 2], wanted: [f32; 2], dt_s: f32) -> (f32, f32) {
         let EqualizerSettings { time_constant_s, pole_rad_s: w, full_speed_counts_s, most_trim } =
             self.settings;

@@ -5,13 +5,15 @@ use crate::config::Decoding;
 
 /// The end of a line on one axis.
 ///
-/// A control law may hunt about the last counts for ever: it breaks a shaft loose with more than keeps it going, and carries it
-/// past the target, again and again. So the last counts are gone one by one. A shaft that stands is pushed harder and harder
-/// towards its target, and let go at the first edge. If a push was too hard the shaft stands beyond, and the next one goes back.
+/// A control law may hunt about the last counts for ever: it breaks a shaft loose with more than keeps it
+/// going, and carries it past the target, again and again. So the last counts are gone one by one. A shaft
+/// that stands is pushed harder and harder towards its target, and let go at the first edge. If a push was
+/// too hard the shaft stands beyond, and the next one goes back.
 ///
-/// This ends. A push ends in an edge, or has grown to the whole supply, and then something holds the shaft that no motor moves.
-/// Each brings the shaft a count nearer at least or past its target; and every [`TURNS_A_COUNT`] times that it has gone past, one
-/// count more is near enough, so that a shaft which jumps over its target whenever it moves comes to rest beside it.
+/// This ends. A push ends in an edge, or has grown to the whole supply, and then something holds the shaft
+/// that no motor moves. Each brings the shaft a count nearer at least or past its target; and every
+/// [`TURNS_A_COUNT`] times that it has gone past, one count more is near enough, so that a shaft which jumps
+/// over its target whenever it moves comes to rest beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LastCounts {
     resting: bool,
@@ -63,8 +65,9 @@ impl LastCounts {
         self.still_us >= STANDS_US
     }
 
-    /// Whether the shaft may be left alone at `target`: it stands in the target's count, near its middle, or not far from it and
-    /// without any edge for a while. Once left alone it stays so until it leaves the count.
+    /// Whether the shaft may be left alone at `target`: it stands in the target's count, near its middle, or
+    /// not far from it and without any edge for a while. Once left alone it stays so until it leaves the
+    /// count.
     pub(super) fn rests(&mut self, motion: &ShaftMotion, target: i32, tolerance_counts: f32) -> bool {
         let not_far_counts = match motion.decoding {
             // Farther from the middle it may be outside A's high half, and be counted wrongly when it leaves.
@@ -83,7 +86,8 @@ impl LastCounts {
         self.resting
     }
 
-    /// Whether, with the plan over for so long, the last counts are better gone one by one than by the control law.
+    /// Whether, with the plan over for so long, the last counts are better gone one by one than by the
+    /// control law.
     pub(super) const fn is_near(&self, motion: &ShaftMotion, target: i32, over_us: u32) -> bool {
         const LATE_US: u32 = 100_000;
         over_us >= LATE_US || (over_us >= STANDS_US && motion.count.abs_diff(target) <= NEAR_COUNTS)
@@ -94,7 +98,8 @@ impl LastCounts {
         motion.count.abs_diff(target) > NEAR_COUNTS
     }
 
-    /// The duty for a shaft that is `away` counts beyond its target: one that stands is pushed there, and let go at the first edge.
+    /// The duty for a shaft that is `away` counts beyond its target: one that stands is pushed there, and let
+    /// go at the first edge.
     pub(super) fn inch(&mut self, away: f32, period_us: u32) -> f32 {
         if !self.stands() {
             self.leaning = 0.0;
@@ -107,8 +112,9 @@ impl LastCounts {
         self.push(-away, period_us)
     }
 
-    /// The duty for a shaft on its way, beyond what the control law asks for: it grows while something `is_stuck` that should go
-    /// `towards` a side, since a law without an integral may ask for less than it takes to break a shaft loose.
+    /// The duty for a shaft on its way, beyond what the control law asks for: it grows while something
+    /// `is_stuck` that should go `towards` a side, since a law without an integral may ask for less than it
+    /// takes to break a shaft loose.
     pub(super) fn lean(&mut self, is_stuck: bool, towards: f32, period_us: u32) -> f32 {
         if !(is_stuck && self.stands()) {
             self.leaning = 0.0;
@@ -135,7 +141,8 @@ mod tests {
 
     const PERIOD_US: u32 = 400;
 
-    /// Runs of the loop until the shaft rests, for a shaft that jumps by `jump` edges whenever the push reaches `breaks_loose`.
+    /// Runs of the loop until the shaft rests, for a shaft that jumps by `jump` edges whenever the push
+    /// reaches `breaks_loose`.
     fn runs_to_rest(target: i32, breaks_loose: f32, jump: u32) -> Option<u32> {
         let mut motion = ShaftMotion::at_rest(Decoding::X4, 900.0);
         let mut last = LastCounts::AT_REST;
@@ -161,7 +168,8 @@ mod tests {
 
     #[test]
     fn a_shaft_goes_to_its_target_count_by_count() {
-        // 5 ms to be sure that it stands, 0.02 / (0.5 / s) = 40 ms of pushing, four times; the runs before it rests at once
+        // 5 ms to be sure that it stands, 0.02 / (0.5 / s) = 40 ms of pushing, four times; the runs before it
+        // rests at once
         let runs = runs_to_rest(4, 0.02, 1);
         assert!(runs.is_some_and(|runs| (400..=470).contains(&runs)), "{runs:?}");
     }

@@ -4,7 +4,8 @@ use super::{ContourController, ContourState, ShaftModel};
 use crate::{Demand, Duty, Machine};
 use core::f64::consts::TAU;
 
-/// A stretch of time in what [`Learning`] remembers; a drawing that was never run has `LearnedBin::default()` everywhere.
+/// A stretch of time in what [`Learning`] remembers; a drawing that was never run has `LearnedBin::default()`
+/// everywhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LearnedBin {
     /// Duty added to both axes.
@@ -65,7 +66,8 @@ impl LearningSettings {
     }
 }
 
-/// Iterative learning control: adds to another controller's duty what the last runs of the same drawing were short of.
+/// Iterative learning control: adds to another controller's duty what the last runs of the same drawing were
+/// short of.
 ///
 /// ```text
 ///   run k     duty = controller's + correction[line, time]            error e(t)
@@ -73,16 +75,18 @@ impl LearningSettings {
 ///   run k+1   the same lines in the same order, from the same place
 /// ```
 ///
-/// What repeats is learned away: friction that is not as described, the pull of a cable, a coupling out of true. The
-/// smoothing runs forwards and backwards over what was stored, so it shifts nothing in time; it also keeps the learning to what
-/// the controller can answer for, so that it does not build up noise. Each line has its own stretch of the store, in the
-/// order in which they come; where the store ends, nothing is added.
+/// What repeats is learned away: friction that is not as described, the pull of a cable, a coupling out of
+/// true. The smoothing runs forwards and backwards over what was stored, so it shifts nothing in time; it
+/// also keeps the learning to what the controller can answer for, so that it does not build up noise. Each
+/// line has its own stretch of the store, in the order in which they come; where the store ends, nothing is
+/// added.
 ///
-/// The store is the caller's: it stays when the controller is made anew for the next run, and what the last run left there is
-/// taken over then.
+/// The store is the caller's: it stays when the controller is made anew for the next run, and what the last
+/// run left there is taken over then.
 ///
-/// Source: S. Arimoto, S. Kawamura, F. Miyazaki, "Bettering Operation of Robots by Learning" (1984); D. A. Bristow, M.
-/// Tharayil, A. G. Alleyne, "A Survey of Iterative Learning Control" (2006), for the filter without shift (Q-filter) and the lead.
+/// Source: S. Arimoto, S. Kawamura, F. Miyazaki, "Bettering Operation of Robots by Learning" (1984); D. A.
+/// Bristow, M. Tharayil, A. G. Alleyne, "A Survey of Iterative Learning Control" (2006), for the filter
+/// without shift (Q-filter) and the lead.
 #[derive(Debug, PartialEq)]
 pub struct Learning<'a, C> {
     controller: C,
@@ -162,8 +166,8 @@ fn take_over(store: &mut [LearnedBin], settings: &LearningSettings) {
     }
 }
 
-/// Makes of the sums the errors themselves, straight from one to the next where no edge came; none before the first, since the line
-/// began at rest in its place.
+/// Makes of the sums the errors themselves, straight from one to the next where no edge came; none before the
+/// first, since the line began at rest in its place.
 fn fill_gaps(line: &mut [LearnedBin], axis: usize) {
     let mut known = (0, 0.0);
     let mut index = 0;
@@ -190,7 +194,8 @@ fn fill_gaps(line: &mut [LearnedBin], axis: usize) {
     }
 }
 
-/// Adds to the corrections of an axis what a PID would have answered to the errors, with the slope at each place itself.
+/// Adds to the corrections of an axis what a PID would have answered to the errors, with the slope at each
+/// place itself.
 fn correct(line: &mut [LearnedBin], axis: usize, settings: &LearningSettings) {
     let gain = |gains: [f32; 2]| gains.get(axis).copied().unwrap_or_default();
     let error = |line: &[LearnedBin], index: usize| {

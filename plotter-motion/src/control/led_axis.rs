@@ -76,7 +76,8 @@ impl LedAxis {
         self.estimator.edge(direction)
     }
 
-    /// Whether the shaft is left alone where it stands, with its motor short-circuited. Called once a run of the loop.
+    /// Whether the shaft is left alone where it stands, with its motor short-circuited. Called once a run of
+    /// the loop.
     pub(super) fn rests(
         &mut self,
         may_rest: bool,
@@ -100,7 +101,8 @@ impl LedAxis {
         if self.last.stands() { Some(self.last.is_far(self.estimator.motion(), target)) } else { None }
     }
 
-    /// Goes towards the target count by count, if with the plan over for so long it is near enough; says whether it does.
+    /// Goes towards the target count by count, if with the plan over for so long it is near enough; says
+    /// whether it does.
     pub(super) fn inches(&mut self, target: i32, over_us: u32, period_us: u32) -> bool {
         let inches = self.last.is_near(self.estimator.motion(), target, over_us);
         if inches {
@@ -128,13 +130,15 @@ impl LedAxis {
         coasts
     }
 
-    /// The duty beyond what the control law asks for, while something `is_stuck` that should go `towards` a side.
+    /// The duty beyond what the control law asks for, while something `is_stuck` that should go `towards` a
+    /// side.
     pub(super) fn lean(&mut self, is_stuck: bool, towards: f32, period_us: u32) -> f32 {
         self.last.lean(is_stuck, towards, period_us)
     }
 
-    /// Drives a shaft that is on its way `towards` a side. It is braked only while it surely turns that way: braked for longer it would turn
-    /// round, and an edge that it meets then may be a new one or the last one again, which no x1 encoder tells.
+    /// Drives a shaft that is on its way `towards` a side. It is braked only while it surely turns that way:
+    /// braked for longer it would turn round, and an edge that it meets then may be a new one or the last one
+    /// again, which no x1 encoder tells.
     pub(super) fn drive(&mut self, duty: f32, towards: f32) {
         if duty * towards < 0.0 && !self.estimator.motion().surely_turns(towards) {
             self.duty.stop();
@@ -164,7 +168,8 @@ impl LedAxis {
         self.duty.stop();
     }
 
-    /// The duty by which the motor as it is found to be does what one as described would do under `duty` at this speed, counts/s.
+    /// The duty by which the motor as it is found to be does what one as described would do under `duty` at
+    /// this speed, counts/s.
     pub(super) fn as_described(&self, duty: f32, speed: f32) -> f32 {
         let (told, found) = (self.estimator.described(), self.estimator.model());
         let sense = if speed == 0.0 { 0.0 } else { libm::copysignf(1.0, speed) };

@@ -101,8 +101,8 @@ impl LinePlan {
         (self.plan_s, self.over_us, self.settled_for) = (0.0, 0, None);
     }
 
-    /// How fast the reference goes on for a pen that is off it by `ex`, `ey` counts: 1 as planned, 0 waiting. It waits for a shaft that
-    /// is behind, not for one that is ahead: that one waits itself.
+    /// How fast the reference goes on for a pen that is off it by `ex`, `ey` counts: 1 as planned, 0 waiting.
+    /// It waits for a shaft that is behind, not for one that is ahead: that one waits itself.
     pub(super) fn rate(&self, [ex, ey]: [f32; 2], wait: Wait) -> f32 {
         let [ux, uy] = self.direction;
         let behind = |error: f32, unit: f32| if error * unit < 0.0 { 0.0 } else { error };

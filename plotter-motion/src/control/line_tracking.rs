@@ -8,8 +8,8 @@ use crate::{
 };
 use core::time::Duration;
 
-/// PID line tracking as published (Öcal, sections 4.4 and 4.5, and the thesis' appendix A, which settles the order of
-/// things).
+/// PID line tracking as published (Öcal, sections 4.4 and 4.5, and the thesis' appendix A, which settles the
+/// order of things).
 ///
 /// With `dx`, `dy` counted from the start of the line and `m` its slope:
 ///
@@ -20,15 +20,17 @@ use core::time::Duration;
 ///
 /// The sign of u is the direction; in the call in which it flips, u is halved. While
 /// `|dy - m dx| > 10 |m| + 10`, with the values of the *previous* call, x gets nothing. It runs only when an
-/// edge or a target comes: when both motors stand, nothing can change any more, wherever they are. The program keeps
-/// `Ki e` of x in a whole number, which is 0 for every error below 100,000 counts, so in effect only y has a sum.
+/// edge or a target comes: when both motors stand, nothing can change any more, wherever they are. The
+/// program keeps `Ki e` of x in a whole number, which is 0 for every error below 100,000 counts, so in effect
+/// only y has a sum.
 ///
-/// The allowed deviation is not certain. The program writes `10*abs(m)+10`. In plain C `abs` makes a whole number of its
-/// argument: a slope of 1/2 would allow 10 counts. In some compilers for its microcontroller `abs` keeps the type of its
-/// argument: the same slope allows 15. The second is built here, with the true `|m|`. The thesis says that the threshold is
-/// "based on the slope of the line" (section 4.5, eq. 4.8), and with the first all slopes below 1 would have the same one. On
-/// steeper lines the two differ by less than 10 counts. The other `abs` of the program are applied to u, which the PWM takes in whole
-/// steps: there nothing is left open, and u is cut.
+/// The allowed deviation is not certain. The program writes `10*abs(m)+10`. In plain C `abs` makes a whole
+/// number of its argument: a slope of 1/2 would allow 10 counts. In some compilers for its microcontroller
+/// `abs` keeps the type of its argument: the same slope allows 15. The second is built here, with the true
+/// `|m|`. The thesis says that the threshold is "based on the slope of the line" (section 4.5, eq. 4.8), and
+/// with the first all slopes below 1 would have the same one. On steeper lines the two differ by less than 10
+/// counts. The other `abs` of the program are applied to u, which the PWM takes in whole steps: there nothing
+/// is left open, and u is cut.
 ///
 /// ```
 /// # use plotter_motion::{Axis, Direction, Machine, MachineConfig, StepPoint, control::{LineController, LineTracking}};

@@ -1,8 +1,9 @@
 //! Controllers that lead two motors along a straight line.
 //!
 //! [`LineTracking`] is the published one, [`Contouring`] ours; both are a [`LineController`]. A machine's
-//! description chooses between them ([`ChosenController`]); a firmware that has but one names it. [`PointToPoint`] is that of
-//! the marking board, whose axes are not its motors; [`Contouring`] leads the motors of a belt as it leads any two.
+//! description chooses between them ([`ChosenController`]); a firmware that has but one names it.
+//! [`PointToPoint`] is that of the marking board, whose axes are not its motors; [`Contouring`] leads the
+//! motors of a belt as it leads any two.
 
 mod pid;
 mod sync_stop;
@@ -78,12 +79,14 @@ pub trait LineController {
     /// Whether the motors stand at the target.
     fn has_arrived(&self) -> bool;
 
-    /// What is wrong with a motor or its encoder, as far as it can tell; `None` also for one that cannot. A new target is tried all the same.
+    /// What is wrong with a motor or its encoder, as far as it can tell; `None` also for one that cannot. A
+    /// new target is tried all the same.
     fn trouble(&self) -> Option<AxisTrouble> {
         None
     }
 
-    /// Where it wants the motors to be now, encoder counts; `None` for a controller that knows but the target.
+    /// Where it wants the motors to be now, encoder counts; `None` for a controller that knows but the
+    /// target.
     fn reference(&self) -> Option<[f64; 2]> {
         None
     }

@@ -5,8 +5,8 @@ use crate::kinematics::BeltSigns;
 use crate::{Axis, Demand, Direction, Drive, Duty, StepPoint};
 use core::time::Duration;
 
-/// [`PointToPoint`], which thinks in two motors on one belt, for one motor an axis: each axis is driven towards its target until it
-/// is within the allowed error, and then gets no drive.
+/// [`PointToPoint`], which thinks in two motors on one belt, for one motor an axis: each axis is driven
+/// towards its target until it is within the allowed error, and then gets no drive.
 ///
 /// ```
 /// # use plotter_motion::control::{LineController, PerAxis, PointToPointSettings};
@@ -31,7 +31,8 @@ impl PerAxis {
         Self { belt: PointToPoint::new(settings), signs: settings.signs, position: StepPoint::default() }
     }
 
-    /// What the demand of two motors on a belt is for the axes: an axis that moves at all gets the whole level.
+    /// What the demand of two motors on a belt is for the axes: an axis that moves at all gets the whole
+    /// level.
     fn axes(&self, belt: Demand) -> Demand {
         let (x, y) = self.signs.twice_axes(belt.x.value(), belt.y.value());
         let level = belt.x.value().abs().max(belt.y.value().abs());

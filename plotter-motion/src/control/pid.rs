@@ -126,8 +126,8 @@ impl Pid {
 }
 
 impl Pid {
-    /// The published form of these gains, for `dt_s` from call to call and an output that is full at `full_output` instead of
-    /// at 1: without the derivative's filter, which that form does not have.
+    /// The published form of these gains, for `dt_s` from call to call and an output that is full at
+    /// `full_output` instead of at 1: without the derivative's filter, which that form does not have.
     ///
     /// ```
     /// # use plotter_motion::control::Pid;

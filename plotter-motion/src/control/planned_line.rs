@@ -14,10 +14,12 @@ use core::time::Duration;
 ///  edges and applied drive ──▶ ShaftEstimator ──────┘
 /// ```
 ///
-/// The plan has the limits of the machine's `[control.contouring]`, and the control law runs `loop_hz` times a second. While the
-/// pen lags behind, the reference slows down and finally waits, so that one motor waits for another that is held fast. When
-/// the plan is over, an axis that stands in the middle of its target's count gets no drive, and one that stands a few counts
-/// beside it is pushed there count by count; both having stood there for `settle_ms`, the pen has arrived. What rounding to the steps of the duty took or gave is made up for in the next run.
+/// The plan has the limits of the machine's `[control.contouring]`, and the control law runs `loop_hz` times
+/// a second. While the pen lags behind, the reference slows down and finally waits, so that one motor waits
+/// for another that is held fast. When the plan is over, an axis that stands in the middle of its target's
+/// count gets no drive, and one that stands a few counts beside it is pushed there count by count; both
+/// having stood there for `settle_ms`, the pen has arrived. What rounding to the steps of the duty took or
+/// gave is made up for in the next run.
 ///
 /// ```
 /// # use core::time::Duration;

@@ -4,7 +4,8 @@ use super::{AxisController, AxisState, ShaftModel, TwoAxes};
 use crate::{Duty, Machine, config::AxisConfig};
 use core::f64::consts::TAU;
 
-/// Ours for one axis: PID on the error against a planned reference, and, with a model, the duty that the plan itself needs.
+/// Ours for one axis: PID on the error against a planned reference, and, with a model, the duty that the plan
+/// itself needs.
 ///
 /// ```text
 ///   acceleration = kp e + kd de/dt + ki ∫e                     (s + w)³ = s³ + 3w s² + 3w² s + w³: kd, kp, ki
@@ -12,11 +13,11 @@ use core::f64::consts::TAU;
 ///   duty = acceleration / (acceleration by the whole supply)
 /// ```
 ///
-/// The integral stops growing while the duty is at its limit (anti-windup), and is forgotten when a line begins. It is also what gets a shaft going that
-/// sticks beside its target, in friction greater than known.
+/// The integral stops growing while the duty is at its limit (anti-windup), and is forgotten when a line
+/// begins. It is also what gets a shaft going that sticks beside its target, in friction greater than known.
 ///
-/// Source of the feed-forward: G. Ellis, "Control System Design Guide" (4th edition, 2012), chapter 8. The gains place
-/// all three poles of the error at -w.
+/// Source of the feed-forward: G. Ellis, "Control System Design Guide" (4th edition, 2012), chapter 8. The
+/// gains place all three poles of the error at -w.
 ///
 /// ```
 /// # use plotter_motion::control::{AxisController, AxisState, PlannedPid, ShaftModel};

@@ -5,8 +5,8 @@ use crate::kinematics::BeltSigns;
 use crate::{Axis, Demand, Direction, Drive, Duty, Machine, StepPoint};
 use core::time::Duration;
 
-/// The published way from point to point (Khan and McGinn, section 0.2.4): each axis is driven towards its target until it is within the
-/// allowed error, then it gets no drive.
+/// The published way from point to point (Khan and McGinn, section 0.2.4): each axis is driven towards its
+/// target until it is within the allowed error, then it gets no drive.
 ///
 /// ```text
 ///   error in x beyond the allowed one?  ──▶ left, none, right ─┐
@@ -14,10 +14,10 @@ use core::time::Duration;
 ///   error in y beyond the allowed one?  ──▶ down, none, up ────┘
 /// ```
 ///
-/// Targets, positions and demands are those of the two motors of a belt ([`BeltSigns`]). A line that is not along one of the
-/// eight directions is not straight: it is a diagonal and then a line along an axis. Motors that differ make a line along an
-/// axis drift; against that there is the published factor for each motor, found by hand, and ours, an
-/// [`Equalizer`], which trims both drives while both motors run.
+/// Targets, positions and demands are those of the two motors of a belt ([`BeltSigns`]). A line that is not
+/// along one of the eight directions is not straight: it is a diagonal and then a line along an axis. Motors
+/// that differ make a line along an axis drift; against that there is the published factor for each motor,
+/// found by hand, and ours, an [`Equalizer`], which trims both drives while both motors run.
 ///
 /// ```
 /// # use plotter_motion::control::{LineController, PointToPoint, PointToPointSettings};
@@ -59,8 +59,8 @@ pub struct PointToPointSettings {
     pub allowed_counts: f32,
     /// Drive since the start of a move.
     pub ramp: DriveRamp,
-    /// Within so many counts of where an axis gets no drive any more, the drive falls back to that at the start, so that unequal
-    /// motors run down for less; 0 as published.
+    /// Within so many counts of where an axis gets no drive any more, the drive falls back to that at the
+    /// start, so that unequal motors run down for less; 0 as published.
     pub slow_counts: f32,
     /// Factors for the drives of both motors, 0 to 1: found by hand as published, or both 1.
     pub factors: [f32; 2],
@@ -71,8 +71,8 @@ pub struct PointToPointSettings {
 }
 
 impl Default for PointToPointSettings {
-    /// As published: 0.45 mm at 46.3 counts/mm, one level of drive (0.45 of the supply, some 30 mm/s on the simulated board) from the start,
-    /// no equalizer; 200 runs a second.
+    /// As published: 0.45 mm at 46.3 counts/mm, one level of drive (0.45 of the supply, some 30 mm/s on the
+    /// simulated board) from the start, no equalizer; 200 runs a second.
     fn default() -> Self {
         let most = 0.45;
         Self {

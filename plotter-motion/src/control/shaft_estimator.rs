@@ -9,20 +9,22 @@ use crate::{
 };
 use core::f64::consts::TAU;
 
-/// Estimates position and speed of a motor's shaft, and what motor and load are, from the times of its encoder's edges and the
-/// voltage on it.
+/// Estimates position and speed of a motor's shaft, and what motor and load are, from the times of its
+/// encoder's edges and the voltage on it.
 ///
-/// An edge says exactly where the shaft is at that moment; between edges the motor's equation (Öcal, section 4.6.1, with
-/// the armature's quick current left out) says how it goes on. Each edge corrects the three states with the
-/// gains of a critically damped fading-memory filter of third order, `1 - z³`, `3/2 (1-z)²(1+z)/T`,
-/// `(1-z)³/T²` with `z = exp(-2 pi f T)` for the time `T` since the last edge. The third state is an acceleration beyond the model, of
-/// any cause and sign; it is never more than the model may be wrong by, and is forgotten when the shaft stands.
+/// An edge says exactly where the shaft is at that moment; between edges the motor's equation (Öcal, section
+/// 4.6.1, with the armature's quick current left out) says how it goes on. Each edge corrects the three
+/// states with the gains of a critically damped fading-memory filter of third order, `1 - z³`,
+/// `3/2 (1-z)²(1+z)/T`, `(1-z)³/T²` with `z = exp(-2 pi f T)` for the time `T` since the last edge. The third
+/// state is an acceleration beyond the model, of any cause and sign; it is never more than the model may be
+/// wrong by, and is forgotten when the shaft stands.
 ///
-/// Source of the gains: E. Brookner, "Tracking and Kalman Filtering Made Easy" (1998), section 1.2.9 and table
-/// 1.2-1 (critically damped g-h-k filter).
+/// Source of the gains: E. Brookner, "Tracking and Kalman Filtering Made Easy" (1998), section 1.2.9 and
+/// table 1.2-1 (critically damped g-h-k filter).
 ///
-/// The model is the description's at first. While the shaft turns, its constants are found by recursive least squares from the mean speeds
-/// between edges: a description that is wrong by a quarter in each constant is right to a hundredth after some tens of edges.
+/// The model is the description's at first. While the shaft turns, its constants are found by recursive least
+/// squares from the mean speeds between edges: a description that is wrong by a quarter in each constant is
+/// right to a hundredth after some tens of edges.
 ///
 /// It also knows what *no* edge says: the shaft is still between the two edges next to it, and was slower
 /// than thought. And it resolves the ambiguity of ×1 decoding (see
@@ -191,8 +193,8 @@ impl ShaftEstimator {
         self.rested = true;
     }
 
-    /// Moves the estimate on by `dt_s` under `voltage_v`; nothing happens unless the time is above 0 and both are
-    /// finite.
+    /// Moves the estimate on by `dt_s` under `voltage_v`; nothing happens unless the time is above 0 and both
+    /// are finite.
     pub fn predict(&mut self, dt_s: f32, voltage_v: f32) {
         self.predict_pulses(dt_s, voltage_v, 0.0);
     }
@@ -227,8 +229,8 @@ impl ShaftEstimator {
         self.motion.turn(dt_s, accel, sense, damping_per_s);
     }
 
-    /// Takes an edge, at the moment that was predicted last, and says where it lies: how far from the resting place of the
-    /// [`count`](Self::count) that it leads into, in counts.
+    /// Takes an edge, at the moment that was predicted last, and says where it lies: how far from the resting
+    /// place of the [`count`](Self::count) that it leads into, in counts.
     pub fn edge(&mut self, direction: Direction) -> f32 {
         if !self.motion.goes_on(direction) {
             self.fit.interrupted();

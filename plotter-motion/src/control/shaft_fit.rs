@@ -2,21 +2,24 @@
 
 use super::ShaftModel;
 
-/// Finds acceleration by voltage, damping and friction of a shaft from the times of its edges while it turns one way.
+/// Finds acceleration by voltage, damping and friction of a shaft from the times of its edges while it turns
+/// one way.
 ///
-/// Edges cut the time into windows. The mean speed of a window is exact: a whole number of counts in a measured time. The difference
-/// between those of two windows that follow one another, of lengths `A` and `B`, is the acceleration weighed by a triangle `w` that
-/// grows over the first and falls over the second, whatever happens in between:
+/// Edges cut the time into windows. The mean speed of a window is exact: a whole number of counts in a
+/// measured time. The difference between those of two windows that follow one another, of lengths `A` and
+/// `B`, is the acceleration weighed by a triangle `w` that grows over the first and falls over the second,
+/// whatever happens in between:
 ///
 /// ```text
 ///   mean_b - mean_a = ∫ w a dt        a = K u - D v - F sign(v)        w = t/A, then 1 - t/B
 /// ```
 ///
-/// That is one linear equation for K, D and F, and a Kalman filter of constants takes it in (recursive least squares). Each is found
-/// as a multiple of what the description says. What no window tells stays as described, and none goes farther from it than
-/// a description can be wrong.
+/// That is one linear equation for K, D and F, and a Kalman filter of constants takes it in (recursive least
+/// squares). Each is found as a multiple of what the description says. What no window tells stays as
+/// described, and none goes farther from it than a description can be wrong.
 ///
-/// Source: L. Ljung, "System Identification" (2nd edition, 1999), section 11.2 (recursive least squares as a Kalman filter).
+/// Source: L. Ljung, "System Identification" (2nd edition, 1999), section 11.2 (recursive least squares as a
+/// Kalman filter).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ShaftFit {
     described: ShaftModel,
@@ -49,12 +52,13 @@ struct Window {
     unsure_s: f32,
 }
 
-/// A window is at least so long, and has so many counts: then its mean speed is known to better than a thousandth, and a
-/// window of a coarse encoder is not longer than a line.
+/// A window is at least so long, and has so many counts: then its mean speed is known to better than a
+/// thousandth, and a window of a coarse encoder is not longer than a line.
 const WINDOW_S: f32 = 3e-3;
 const WINDOW_COUNTS: f32 = 2.0;
 
-/// How far a description may be wrong, as a share: inertia, torque and resistance each by a quarter make 1.25^2 / 0.75 - 1 = 1.1.
+/// How far a description may be wrong, as a share: inertia, torque and resistance each by a quarter make
+/// 1.25^2 / 0.75 - 1 = 1.1.
 const DESCRIBED_DOUBT: f32 = 1.0;
 
 /// How far from the description a constant may be found.
@@ -143,7 +147,8 @@ impl ShaftFit {
         self.learn(&before, &ended).then(|| self.model())
     }
 
-    /// Whether it has become another motor for certain: what was found is then as doubtful as the description is.
+    /// Whether it has become another motor for certain: what was found is then as doubtful as the description
+    /// is.
     pub(super) fn has_changed(&mut self) -> bool {
         // Two may be a hand; three are 9 ms at least.
         const CHANGED: u8 = 3;

@@ -1,5 +1,5 @@
-//! [`ShaftMotion`]: place and speed of a shaft from the edges of its encoder, for estimators that differ in what else they
-//! believe of it.
+//! [`ShaftMotion`]: place and speed of a shaft from the edges of its encoder, for estimators that differ in
+//! what else they believe of it.
 
 use crate::{Direction, config::Decoding};
 
@@ -25,7 +25,8 @@ pub(super) struct ShaftMotion {
     /// Whether it may have gone up or down from there.
     up: bool,
     down: bool,
-    /// Whether it rests so near to the upper or the lower end of A's high half that it may be on either side of it.
+    /// Whether it rests so near to the upper or the lower end of A's high half that it may be on either side
+    /// of it.
     at_upper: bool,
     at_lower: bool,
 }
@@ -73,7 +74,8 @@ impl ShaftMotion {
         self.since_correction_s += dt_s;
     }
 
-    /// Turns on for `dt_s` under a constant acceleration, of which friction against `sense` is a part, and a damping.
+    /// Turns on for `dt_s` under a constant acceleration, of which friction against `sense` is a part, and a
+    /// damping.
     pub(super) fn turn(&mut self, dt_s: f32, accel: f32, sense: f32, damping_per_s: f32) {
         // exact for a constant push: the speed tends to accel / damping with the time constant 1 / damping
         let decay = libm::expf(-damping_per_s * dt_s);
@@ -101,7 +103,8 @@ impl ShaftMotion {
         self.down |= counts < 0.0;
     }
 
-    /// Takes note of a drive of `accel` counts/s^2 against a dry friction; says whether it may have turned the shaft round.
+    /// Takes note of a drive of `accel` counts/s^2 against a dry friction; says whether it may have turned
+    /// the shaft round.
     pub(super) fn may_turn_under(&mut self, accel: f32, dry_friction: f32) -> bool {
         // A push of less than this share of the friction as it is known moves no shaft.
         const SHARE: f32 = 0.5;
@@ -140,8 +143,9 @@ impl ShaftMotion {
 
     /// No edge has come: it is still between those next to it. Says whether it was thought to be beyond one.
     ///
-    /// That it is late says that it was slower since the last edge, by what it is short of over that time. That it has not come where
-    /// the shaft should have long been far beyond it says that something holds the shaft.
+    /// That it is late says that it was slower since the last edge, by what it is short of over that time.
+    /// That it has not come where the shaft should have long been far beyond it says that something holds the
+    /// shaft.
     pub(super) fn without_edge(&mut self, dry_friction: f32) -> bool {
         // So far beyond the edge it would have to be, counts, if nothing held it.
         const HELD_COUNTS: f32 = 1.5;
@@ -173,7 +177,8 @@ impl ShaftMotion {
         true
     }
 
-    /// From here on it stands, as near to where it is thought to be as its speed was known: a dry friction brought it to rest.
+    /// From here on it stands, as near to where it is thought to be as its speed was known: a dry friction
+    /// brought it to rest.
     ///
     /// So near to an edge it may stand on either side of it, and meet it however it goes on.
     pub(super) const fn stands(&mut self, dry_friction: f32) {
@@ -182,7 +187,8 @@ impl ShaftMotion {
         }
         (self.speed, self.speed_doubt, self.from) = (0.0, 0.0, self.offset);
         if matches!(self.decoding, Decoding::X1) {
-            // It came from below to the upper end, and from above to the lower one: from the other side it would have met them.
+            // It came from below to the upper end, and from above to the lower one: from the other side it
+            // would have met them.
             self.at_upper = (self.up || self.at_upper) && (self.offset - 0.5).abs() <= self.place_doubt;
             self.at_lower = (self.down || self.at_lower) && self.offset.abs() <= self.place_doubt;
         }
@@ -199,11 +205,11 @@ impl ShaftMotion {
                 Decoding::X2 | Decoding::X4 => 1.0,
             },
         };
-        // Between the edge that it may have rested at and the next one is at least a whole count of way, and a slow shaft's way is known to
-        // a third of it.
+        // Between the edge that it may have rested at and the next one is at least a whole count of way, and
+        // a slow shaft's way is known to a third of it.
         const AT_ONCE_COUNTS: f32 = 0.25;
-        // One way only, it met the first edge on its way; from a rest at an edge that one at once or not at all. Else it met the one that is
-        // nearer to where it is thought to be.
+        // One way only, it met the first edge on its way; from a rest at an edge that one at once or not at
+        // all. Else it met the one that is nearer to where it is thought to be.
         let is_next = match (self.decoding, direction) {
             (Decoding::X2 | Decoding::X4, _) => true,
             (Decoding::X1, Direction::Plus) if !self.down && self.at_lower => {
@@ -266,7 +272,8 @@ mod tests {
         motion.count
     }
 
-    /// A rises on the way down at 0.5 of a count, and on the way up at 0: a shaft that rests about 0.5 may have 0.5 or -0.5 next.
+    /// A rises on the way down at 0.5 of a count, and on the way up at 0: a shaft that rests about 0.5 may
+    /// have 0.5 or -0.5 next.
     #[test]
     fn a_shaft_that_rests_at_an_edge_meets_it_at_once_or_not_at_all() {
         for offset in [0.48, 0.497, 0.5, 0.52] {

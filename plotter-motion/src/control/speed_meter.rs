@@ -5,12 +5,14 @@ use core::time::Duration;
 /// Samples that are kept: a window is at most this many sampling periods.
 const SAMPLES: usize = 10;
 
-/// s(t) = (P(t) − P(t − dt))/dt with dt = 100 ms at 30 mm/s, and shorter for slow motion (Khan and McGinn, section 0.2.5).
+/// s(t) = (P(t) − P(t − dt))/dt with dt = 100 ms at 30 mm/s, and shorter for slow motion (Khan and McGinn,
+/// section 0.2.5).
 ///
-/// The window is as many sampling periods as the last speed asks for: all ten from `full_window_counts_s` on, in
-/// proportion below, never less than two. With 46.3 counts to the millimetre a window of 100 ms at 30 mm/s holds
-/// 139 counts, so the grain of the result is 0.7 %; a short window follows a slow start at once, but its grain is one
-/// count in 20 ms, 1.1 mm/s. What has to be straight to a count is therefore led by counts, not by this.
+/// The window is as many sampling periods as the last speed asks for: all ten from `full_window_counts_s` on,
+/// in proportion below, never less than two. With 46.3 counts to the millimetre a window of 100 ms at 30 mm/s
+/// holds 139 counts, so the grain of the result is 0.7 %; a short window follows a slow start at once, but
+/// its grain is one count in 20 ms, 1.1 mm/s. What has to be straight to a count is therefore led by counts,
+/// not by this.
 ///
 /// ```
 /// # use plotter_motion::control::SpeedMeter;

@@ -3,8 +3,9 @@
 use crate::config::SyncStopConfig;
 
 /// The published rule (Öcal, section 4.5): the master waits while the slave is farther from the line than
-/// `slope_counts |m| + offset_counts`, measured along the slave's axis. `|m|` is the size of the slope as it is, never cut to a whole
-/// number: see [`LineTracking`](crate::control::LineTracking) for what the published program leaves open.
+/// `slope_counts |m| + offset_counts`, measured along the slave's axis. `|m|` is the size of the slope as it
+/// is, never cut to a whole number: see [`LineTracking`](crate::control::LineTracking) for what the published
+/// program leaves open.
 ///
 /// ```
 /// # use plotter_motion::{config::SyncStopConfig, control::SyncStop};

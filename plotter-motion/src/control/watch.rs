@@ -7,12 +7,13 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Trouble {
-    /// It does not move under a drive that would move it whatever its friction. It is let go, and tried again after longer and longer
-    /// pauses.
+    /// It does not move under a drive that would move it whatever its friction. It is let go, and tried again
+    /// after longer and longer pauses.
     Held,
     /// It turns against its drive, faster and faster. Both motors are left without drive.
     WrongWay,
-    /// Its edges came as no shaft can turn, so its place is not known any more. Both motors are left without drive.
+    /// Its edges came as no shaft can turn, so its place is not known any more. Both motors are left without
+    /// drive.
     Encoder,
     /// It answers its drive otherwise than a moment ago. It is led on by what it does now.
     Changed,
@@ -64,22 +65,25 @@ impl fmt::Display for AxisTrouble {
 
 /// Looks for what no shaft does.
 ///
-/// Edges may be told late, several at once, or to the nearest tenth of a millisecond: nothing is concluded from one of them.
+/// Edges may be told late, several at once, or to the nearest tenth of a millisecond: nothing is concluded
+/// from one of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Watch {
-    /// Speed and way since the last edge of a shaft that is harder to turn than any description says, counts/s and counts; while it
-    /// is tried again, of one that nothing holds.
+    /// Speed and way since the last edge of a shaft that is harder to turn than any description says,
+    /// counts/s and counts; while it is tried again, of one that nothing holds.
     slowest: [f32; 2],
     since_edge_s: f32,
-    /// Which way the shaft went at the last edge: 1 or -1; how many edges it has gone that way since the last of `times_s` ended.
+    /// Which way the shaft went at the last edge: 1 or -1; how many edges it has gone that way since the last
+    /// of `times_s` ended.
     sense: f32,
     edges: u8,
-    /// How long the last rows of [`ROW`] edges one way took, s, the present one first; 0 where there was none.
+    /// How long the last rows of [`ROW`] edges one way took, s, the present one first; 0 where there was
+    /// none.
     times_s: [f32; 3],
     /// The greatest drive one way and the other since the row before the last began, counts/s^2.
     drives: [f32; 2],
-    /// For how long it has turned against its drive, s, and what speed that took from it, counts/s; how many edges came meanwhile, and
-    /// the time between the first two of them.
+    /// For how long it has turned against its drive, s, and what speed that took from it, counts/s; how many
+    /// edges came meanwhile, and the time between the first two of them.
     against_s: f32,
     taken: f32,
     against: u8,
@@ -145,8 +149,8 @@ impl Watch {
         self.changed_s = TOLD_S;
     }
 
-    /// The greatest acceleration that a shaft which did not move is tried with, counts/s^2: it grows from one try to the next. `None`
-    /// for any.
+    /// The greatest acceleration that a shaft which did not move is tried with, counts/s^2: it grows from one
+    /// try to the next. `None` for any.
     pub(super) fn most_accel(&self, dry_friction: f32) -> Option<f32> {
         (self.tries > 0).then(|| self.tried() * dry_friction)
     }
@@ -157,13 +161,16 @@ impl Watch {
 
     /// Time passes under a drive of `accel` counts/s^2 against a dry friction.
     pub(super) fn pass(&mut self, dt_s: f32, accel: f32, dry_friction: f32) {
-        // A shaft of so little of the acceleration and so much of the friction that are believed is beyond all that a description or a
-        // supply that sags can be wrong by. If that one had gone so far, this one is held.
+        // A shaft of so little of the acceleration and so much of the friction that are believed is beyond
+        // all that a description or a supply that sags can be wrong by. If that one had gone so far, this one
+        // is held.
         const SLOWEST: [f32; 3] = [0.4, 2.5, 2.0];
-        // After a while without an edge the doubt is on the other side: what is let go for nothing is tried again at once.
+        // After a while without an edge the doubt is on the other side: what is let go for nothing is tried
+        // again at once.
         const LATE_S: f32 = 0.03;
         const SLOW: [f32; 3] = [0.7, 1.5, 2.0];
-        // A try ends when a shaft that nothing holds had gone so far: without an edge nobody knows that it does not.
+        // A try ends when a shaft that nothing holds had gone so far: without an edge nobody knows that it
+        // does not.
         const TRIED: [f32; 3] = [1.0, 1.0, 8.0];
         // The first pause, s; each is twice as long as the one before.
         const PAUSE_S: f32 = 0.05;
@@ -205,8 +212,8 @@ impl Watch {
         }
     }
 
-    /// An edge came; `most_accel` is what the whole supply does, and `braking` what friction and damping take,
-    /// counts/s^2; by a share `doubt` all of it may be wrong.
+    /// An edge came; `most_accel` is what the whole supply does, and `braking` what friction and damping
+    /// take, counts/s^2; by a share `doubt` all of it may be wrong.
     pub(super) fn edge(&mut self, direction: Direction, most_accel: f32, braking: f32, doubt: f32) {
         #[expect(clippy::cast_precision_loss, reason = "1 or -1")]
         let sense = direction.sign() as f32;
@@ -225,8 +232,8 @@ impl Watch {
 
     /// Another edge the same way.
     fn goes_on(&mut self, since_s: f32, braking: f32, doubt: f32) {
-        // A drive of so little of what is believed takes all the speed from a shaft that comes on by itself. One that still comes on is
-        // driven there.
+        // A drive of so little of what is believed takes all the speed from a shaft that comes on by itself.
+        // One that still comes on is driven there.
         const LEAST: f32 = 0.3;
         const SURE_EDGES: u8 = 3;
         if self.against_s >= since_s {
@@ -244,7 +251,8 @@ impl Watch {
         if self.edges < ROW {
             return;
         }
-        // Beyond what its drive had left for it and so many times what is not known of both lies no shaft's gain of speed.
+        // Beyond what its drive had left for it and so many times what is not known of both lies no shaft's
+        // gain of speed.
         const MOST_DOUBTS: f32 = 4.0;
         // Edges that are told late by themselves do not make a row of four so much shorter.
         const SOONER: f32 = 0.6;

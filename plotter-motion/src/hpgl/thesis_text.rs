@@ -25,7 +25,7 @@
 //! ```
 
 use super::Position;
-use crate::{Pen, PenMove, StepPoint};
+use crate::{Pen, PenMove, PlotOp, StepPoint};
 use core::fmt;
 
 /// Greatest coordinate that five digits hold, encoder counts.
@@ -354,6 +354,35 @@ pub fn read(text: &[u8]) -> impl Iterator<Item = Result<Line, Error>> + Clone {
     text.iter().map(Some).chain([None]).filter_map(move |byte| match byte {
         Some(byte) => reader.push(*byte),
         None => reader.finish(),
+    })
+}
+
+/// The plot operations of a text, for a machine of so many counts a millimetre; lines that move nothing are left
+/// out.
+///
+/// ```
+/// # use plotter_motion::hpgl::thesis_text::plot_ops;
+/// # use plotter_motion::{PlotOp, Point};
+/// let mut ops = plot_ops(*b"PU, 00400, 00000\nPD, 00400, 00200\n", 40.0);
+/// assert_eq!(ops.next(), Some(Ok(PlotOp::Travel { to: Point::new(10.0, 0.0) })));
+/// assert_eq!(ops.next(), Some(Ok(PlotOp::Draw { to: Point::new(10.0, 5.0), feed_mm_s: None })));
+/// assert_eq!(ops.next(), None);
+/// ```
+pub fn plot_ops<I: IntoIterator<Item = u8>>(
+    bytes: I,
+    counts_per_mm: f64,
+) -> impl Iterator<Item = Result<PlotOp, Error>> + use<I> {
+    let mut reader = Reader::new();
+    bytes.into_iter().map(Some).chain([None]).filter_map(move |byte| {
+        let line = match byte {
+            Some(byte) => reader.push(byte),
+            None => reader.finish(),
+        };
+        match line? {
+            Ok(Line::Move(pen_move)) => Some(Ok(pen_move.to_op(counts_per_mm))),
+            Ok(_) => None,
+            Err(error) => Some(Err(error)),
+        }
     })
 }
 

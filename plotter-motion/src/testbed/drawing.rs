@@ -38,7 +38,8 @@ impl Drawing {
         Self { name: format!("{heading_deg} deg"), moves }
     }
 
-    /// Eight lines of 60 mm in all quadrants, flat, steep, along both axes: the measure of docs/results/control-test-bed.md.
+    /// Eight lines of 60 mm in all quadrants, flat, steep, along both axes: the measure of
+    /// docs/results/control-test-bed.md.
     #[must_use]
     pub fn star(bed: &TestBed) -> Vec<Self> {
         const HEADINGS_DEG: [f64; 8] = [0.0, 30.0, 75.0, 90.0, 135.0, 195.0, 250.0, 315.0];

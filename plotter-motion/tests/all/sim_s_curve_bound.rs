@@ -195,8 +195,8 @@ fn no_motion_is_quicker_than_the_bound() {
     assert!((found / libm::cbrt(32.0 / JERK) - 1.0).abs() < RATIO - 1.0, "{found}");
 }
 
-/// Prints the table of docs/results/stepper-motion.md: no drawing is planned in less than the least time, nor that below the
-/// trapezoid's.
+/// Prints the table of docs/results/stepper-motion.md: no drawing is planned in less than the least time, nor
+/// that below the trapezoid's.
 #[test]
 #[ignore = "a minute: the table of docs/results/stepper-motion.md, with the command that stands there"]
 fn table_of_bounds() {

@@ -178,8 +178,8 @@ fn chords_end_on_the_arc_that_follows_them() {
 /// its chords.
 const LONGER: f64 = 1.003;
 
-/// The table of docs/results/stepper-motion.md, with blocks enough for the best: no row takes longer than Grbl's rule, and
-/// no drawing longer with an allowance than without.
+/// The table of docs/results/stepper-motion.md, with blocks enough for the best: no row takes longer than
+/// Grbl's rule, and no drawing longer with an allowance than without.
 #[test]
 #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn table_of_short_chords() {

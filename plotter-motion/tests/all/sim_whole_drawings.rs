@@ -1,7 +1,8 @@
-//! Whole drawings on motors that nobody measured: every constant of the description is wrong by a share, up or down by chance.
+//! Whole drawings on motors that nobody measured: every constant of the description is wrong by a share, up
+//! or down by chance.
 //!
-//! `cargo test --release -p plotter-motion --test all sim_whole_drawings:: -- --ignored --nocapture` prints the tables of
-//! docs/results/whole-drawings.md, with all controllers and twenty seeds.
+//! `cargo test --release -p plotter-motion --test all sim_whole_drawings:: -- --ignored --nocapture` prints
+//! the tables of docs/results/whole-drawings.md, with all controllers and twenty seeds.
 
 #![cfg(all(feature = "alloc", feature = "toml"))]
 
@@ -34,7 +35,8 @@ fn machine(name: &str) -> Machine {
     Machine::new(MachineConfig::from_toml(&text).unwrap()).unwrap()
 }
 
-/// The description of a machine with every constant of motor and load wrong by `share`, each up or down by chance.
+/// The description of a machine with every constant of motor and load wrong by `share`, each up or down by
+/// chance.
 fn misdescribed(machine: &Machine, share: f64, seed: u64) -> Machine {
     let mut chance = Chance(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
     for _ in 0..8 {
@@ -318,7 +320,8 @@ impl Worst {
     }
 }
 
-/// How many seeds a controller is tried with: it takes its time, and what does not finish its second a target.
+/// How many seeds a controller is tried with: it takes its time, and what does not finish its second a
+/// target.
 fn seeds(name: &str, share: f64) -> usize {
     match name {
         _ if share == 0.0 => 1,

@@ -89,7 +89,9 @@ impl DrawingFile {
                     op => Some(op.map_err(|error| error.to_string())),
                 }))
             }
-            Language::Thesis => Box::new(thesis_ops(bytes, counts_per_mm)),
+            Language::Thesis => Box::new(
+                thesis_text::plot_ops(bytes, counts_per_mm).map(|op| op.map_err(|error| error.to_string())),
+            ),
         })
     }
 
@@ -103,28 +105,6 @@ impl DrawingFile {
         // A disk that fails in the middle ends the drawing there.
         Ok(Box::new(BufReader::new(file).bytes().map_while(Result::ok)))
     }
-}
-
-fn thesis_ops(
-    mut bytes: impl Iterator<Item = u8> + Send,
-    counts_per_mm: f64,
-) -> impl Iterator<Item = Item> + Send {
-    let mut reader = Some(thesis_text::Reader::new());
-    std::iter::from_fn(move || {
-        loop {
-            let line = match bytes.next() {
-                Some(byte) => reader.as_mut()?.push(byte),
-                None => Some(reader.take()?.finish()?),
-            };
-            match line {
-                Some(Ok(thesis_text::Line::Move(pen_move))) => {
-                    return Some(Ok(pen_move.to_op(counts_per_mm)));
-                }
-                Some(Err(error)) => return Some(Err(error.to_string())),
-                _ => {}
-            }
-        }
-    })
 }
 
 /// The language: by what a file contains, and by its name where that leaves it open.

@@ -13,8 +13,8 @@ use plotter_vector::follow::{CameraSettings, End, MappingSettings, Paper, TableE
 const LEAST_COVERAGE: f64 = 0.97;
 const MOST_RMS_PX: f64 = 0.75;
 
-/// The table of `docs/results/line-following.md`. `TABLE` is the table's error in px, `DRAWING` a drawing's name; `INTO` a
-/// folder into which the drawings are written as pictures.
+/// The table of `docs/results/line-following.md`. `TABLE` is the table's error in px, `DRAWING` a drawing's
+/// name; `INTO` a folder into which the drawings are written as pictures.
 #[test]
 #[ignore = "ten minutes in release: cargo test --release -p plotter-vector --test all follow_kinds:: -- --ignored --nocapture"]
 fn drawings_of_many_kinds() {

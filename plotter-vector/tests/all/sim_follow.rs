@@ -206,8 +206,8 @@ fn the_published_follower_is_never_right_on_dense_lines() {
     assert!(shortcuts + turns > 5, "{shortcuts} {turns}");
 }
 
-/// Laps of each figure: the table of `docs/results/line-following.md`. `SEEDS=from..to` are the laps, `FIGURE` is a figure's
-/// name; each lap is a line, so that a run can be split, stopped and gone on with.
+/// Laps of each figure: the table of `docs/results/line-following.md`. `SEEDS=from..to` are the laps,
+/// `FIGURE` is a figure's name; each lap is a line, so that a run can be split, stopped and gone on with.
 #[test]
 #[ignore = "minutes in release: SEEDS=0..3 cargo test --release -p plotter-vector --test all sim_follow::laps -- --ignored --nocapture"]
 fn laps_of_the_four_figures() {

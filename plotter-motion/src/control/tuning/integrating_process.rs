@@ -13,7 +13,8 @@ use core::f64::consts::TAU;
 ///           s (1 + T s (1 + Te s))                   Te: what the current takes before it, s
 /// ```
 ///
-/// For a DC motor under voltage (Öcal, section 4.6.1, with a load's inertia and viscous friction b) it is exact, with
+/// For a DC motor under voltage (Öcal, section 4.6.1, with a load's inertia and viscous friction b) it is
+/// exact, with
 ///
 /// ```text
 ///   c = Kt Ke + R b     K = V Kt / c     T = (R J + L b) / c     Te = L J / (R J + L b)
@@ -43,8 +44,8 @@ pub struct IntegratingProcess {
 }
 
 impl IntegratingProcess {
-    /// The motor and the load of an axis of a checked [`Machine`](crate::Machine), from its description; without dead
-    /// time.
+    /// The motor and the load of an axis of a checked [`Machine`](crate::Machine), from its description;
+    /// without dead time.
     #[must_use]
     pub fn of(axis: &AxisConfig) -> Self {
         let (motor, load) = (&axis.motor, &axis.load);
@@ -60,7 +61,8 @@ impl IntegratingProcess {
         }
     }
 
-    /// The share of the duty that the Coulomb friction of an axis takes, from its description: `Tc R / (Kt V)`.
+    /// The share of the duty that the Coulomb friction of an axis takes, from its description:
+    /// `Tc R / (Kt V)`.
     ///
     /// ```
     /// # use plotter_motion::{config::AxisConfig, control::tuning::IntegratingProcess};
@@ -73,19 +75,21 @@ impl IntegratingProcess {
         axis.load.coulomb_n_m * motor.resistance_ohm / (motor.torque_n_m_per_a * motor.supply_v)
     }
 
-    /// Lag and dead time of the simplest process that a loop with `tick_s` between its runs is near: all of T and half of
-    /// Te, and beyond the dead time the other half of Te and half a tick, for which a duty is held.
+    /// Lag and dead time of the simplest process that a loop with `tick_s` between its runs is near: all of T
+    /// and half of Te, and beyond the dead time the other half of Te and half a tick, for which a duty is
+    /// held.
     ///
-    /// Source: S. Skogestad, "Simple analytic rules for model reduction and PID controller tuning", Journal of Process
-    /// Control 13 (2003), section 2 (the half rule).
+    /// Source: S. Skogestad, "Simple analytic rules for model reduction and PID controller tuning", Journal
+    /// of Process Control 13 (2003), section 2 (the half rule).
     #[must_use]
     pub fn lag_and_delay_s(&self, tick_s: f64) -> (f64, f64) {
         let half = 0.5 * self.second_time_constant_s;
         (self.time_constant_s + half, self.dead_time_s + half + 0.5 * tick_s)
     }
 
-    /// The response to duties that are held over ticks, from tick to tick, at a place on the unit circle: exact, by partial
-    /// fractions of the step response (K. J. Åström, B. Wittenmark, "Computer-Controlled Systems", 1997, section 2.6).
+    /// The response to duties that are held over ticks, from tick to tick, at a place on the unit circle:
+    /// exact, by partial fractions of the step response (K. J. Åström, B. Wittenmark, "Computer-Controlled
+    /// Systems", 1997, section 2.6).
     pub(super) fn sampled(&self, at: &SamplePoint) -> Complex {
         let Self { gain_counts_s: k, time_constant_s: t, dead_time_s, .. } = *self;
         let h = at.tick_s;
@@ -138,8 +142,8 @@ mod tests {
     use crate::config::{LoadConfig, MotorConfig};
     use crate::plant::{DcMotor, DcMotorState};
 
-    /// What a motor under a sine does after a while is size and angle of its transfer function; the simulated motor knows
-    /// nothing of partial fractions.
+    /// What a motor under a sine does after a while is size and angle of its transfer function; the simulated
+    /// motor knows nothing of partial fractions.
     fn response_of_motor(axis: &AxisConfig, tick_s: f64, ticks_a_period: u32) -> Complex {
         const PERIODS_BEFORE: u32 = 600;
         let motor = DcMotor::new(&axis.motor, &axis.load, tick_s);

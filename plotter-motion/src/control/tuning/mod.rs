@@ -16,12 +16,14 @@
 //! | a process | [`ContouringBandwidth`]: the stiffest loop of a stated sensitivity | `bandwidth_hz`, `observer_hz` |
 //! | any loop, the published gains too | [`LoopMargins`] of a [`SampledLoop`] | gain, phase, delay margin, sensitivity |
 //!
-//! Both experiments are state machines without I/O: they take a count every tick and make a [`Demand`](crate::Demand), which goes
-//! through the [`SafetyGate`](crate::SafetyGate) like every other. They end in bounded time and within a bounded travel, with a
-//! result or with a [`TuningError`] that says what is wrong. Duties are shares of the supply, positions encoder counts.
+//! Both experiments are state machines without I/O: they take a count every tick and make a
+//! [`Demand`](crate::Demand), which goes through the [`SafetyGate`](crate::SafetyGate) like every other. They
+//! end in bounded time and within a bounded travel, with a result or with a [`TuningError`] that says what is
+//! wrong. Duties are shares of the supply, positions encoder counts.
 //!
-//! All of it is `f64` and takes thousands of sines for one result: on a desktop milliseconds, on a small microcontroller seconds. The
-//! experiments' ticks are cheap, but for the last one of each run, which fits a curve.
+//! All of it is `f64` and takes thousands of sines for one result: on a desktop milliseconds, on a small
+//! microcontroller seconds. The experiments' ticks are cheap, but for the last one of each run, which fits a
+//! curve.
 
 mod compensator;
 mod complex;
