@@ -18,7 +18,8 @@ pub fn vectorizer(config: &VectorizeConfig, mm_per_px: f64) -> Result<Vectorizer
     let method = match config.threshold {
         ThresholdChoice::Adaptive => ThresholdMethod::Adaptive,
         ThresholdChoice::Level(level) => ThresholdMethod::Level(level),
-        _ => ThresholdMethod::Otsu,
+        ThresholdChoice::Otsu => ThresholdMethod::Otsu,
+        _ => ThresholdMethod::Auto,
     };
     let mode = match config.mode {
         VectorizeMode::Outline => Mode::Outline,

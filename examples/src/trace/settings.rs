@@ -50,6 +50,7 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Settings, String> {
     }
     if let Some(text) = &arguments.threshold {
         config.threshold = match text.parse::<ThresholdMethod>().map_err(|error| format!("--{error}"))? {
+            ThresholdMethod::Auto => ThresholdChoice::Auto,
             ThresholdMethod::Otsu => ThresholdChoice::Otsu,
             ThresholdMethod::Adaptive => ThresholdChoice::Adaptive,
             ThresholdMethod::Level(level) => ThresholdChoice::Level(level),

@@ -46,7 +46,7 @@ impl Default for VectorizeConfig {
             max_error_px: 0.5,
             arcs: false,
             curves: false,
-            threshold: ThresholdChoice::Otsu,
+            threshold: ThresholdChoice::Auto,
             pens: PensChoice::Count(1),
             order: StrokeOrder::Best,
             hatch_mm: 0.0,
@@ -162,12 +162,14 @@ pub enum StrokeOrder {
     Best,
 }
 
-/// How ink is told from paper. In a file `"otsu"`, `"adaptive"`, or a level: `"128"` or `128`.
+/// How ink is told from paper. In a file `"auto"`, `"otsu"`, `"adaptive"`, or a level: `"128"` or `128`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ThresholdChoice {
-    /// One level for the whole sheet, found from the picture.
+    /// As the picture asks for: one level where that serves, else as photographs need it.
     #[default]
+    Auto,
+    /// One level for the whole sheet, found from the picture.
     Otsu,
     /// Another level in each place, for uneven light.
     Adaptive,
@@ -186,6 +188,7 @@ impl ThresholdChoice {
     #[must_use]
     pub fn from_text(text: &str) -> Option<Self> {
         match text {
+            "auto" => Some(Self::Auto),
             "otsu" => Some(Self::Otsu),
             "adaptive" => Some(Self::Adaptive),
             level => level.parse().ok().map(Self::Level),
@@ -196,6 +199,7 @@ impl ThresholdChoice {
 impl core::fmt::Display for ThresholdChoice {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
+            Self::Auto => f.write_str("auto"),
             Self::Otsu => f.write_str("otsu"),
             Self::Adaptive => f.write_str("adaptive"),
             Self::Level(level) => level.fmt(f),
@@ -218,7 +222,7 @@ impl<'de> serde::Deserialize<'de> for ThresholdChoice {
         impl serde::de::Visitor<'_> for Visitor {
             type Value = ThresholdChoice;
             fn expecting(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-                f.write_str("otsu, adaptive or a level from 0 to 255")
+                f.write_str("auto, otsu, adaptive or a level from 0 to 255")
             }
             fn visit_str<E: Error>(self, text: &str) -> Result<ThresholdChoice, E> {
                 ThresholdChoice::from_text(text).ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))

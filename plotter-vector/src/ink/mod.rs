@@ -1,5 +1,7 @@
 //! What of a picture is ink, and which pen drew it: thresholds, light, dirt, colours, widths.
 
+pub(crate) mod evened;
+mod evenness;
 pub(crate) mod hairlines;
 pub(crate) mod illumination;
 mod layers;
@@ -11,6 +13,8 @@ pub(crate) mod row_window;
 pub(crate) mod speckle;
 mod threshold;
 
+pub(crate) use evened::Evened;
+pub use evened::Look;
 pub use layers::{Layers, Pens, PensError};
 pub use line_width::{LineWidth, pen_width_px};
 pub use palette::{MAX_PENS, Palette, PaletteError, PalettePen};

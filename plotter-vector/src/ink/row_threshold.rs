@@ -1,5 +1,7 @@
 //! [`Survey`] and [`RowThreshold`]: a threshold for pictures that come row by row.
 
+use crate::ink::evened::Evened;
+use crate::ink::evenness::Evenness;
 use crate::ink::illumination::{Light, TileRow, Tiles};
 use crate::parallel::each;
 use crate::picture::histogram::half_covered;
@@ -24,6 +26,9 @@ pub(crate) struct Survey {
     levels: Vec<u8>,
     measured: Vec<TileRow>,
     seen: Seen,
+    /// Of grey levels, where the method is found from them.
+    evenness: Option<Evenness>,
+    height: u32,
 }
 
 /// The second pass: ink of one row after another, in any order.
@@ -45,8 +50,11 @@ const RIM_OF_INK: u64 = 20;
 impl Survey {
     /// Before the first row of a picture of `width` × `height` px, a size that has been checked.
     pub(crate) fn checked(threshold: Threshold, width: u32, height: u32) -> Self {
-        let Threshold { polarity, window_px, min_contrast, .. } = threshold;
+        let Threshold { polarity, window_px, min_contrast, method, .. } = threshold;
+        let evenness = (method == ThresholdMethod::Auto).then(|| Evenness::new(width, height));
         Self {
+            evenness,
+            height,
             threshold,
             width: width as usize,
             rows_left: height,
@@ -69,6 +77,9 @@ impl Survey {
         let missing = self.width - levels.len();
         let last = levels.last().copied().unwrap_or(u8::MAX);
         self.seen.push(levels);
+        if let Some(evenness) = &mut self.evenness {
+            evenness.push(self.height - rows_left - 1, levels);
+        }
         self.histogram.push(levels);
         self.histogram.add(last, missing as u64);
         if self.threshold.method == ThresholdMethod::Adaptive {
@@ -101,6 +112,9 @@ impl Survey {
     /// All rows at once, instead of [`Survey::push`].
     pub(crate) fn push_all(&mut self, levels: &[u8]) {
         self.seen.push(levels);
+        if let Some(evenness) = &mut self.evenness {
+            (0..).zip(levels.chunks(self.width.max(1))).for_each(|(y, row)| evenness.push(y, row));
+        }
         self.histogram = whole_histogram(levels);
         if self.threshold.method == ThresholdMethod::Adaptive {
             let mut rest = levels;
@@ -114,6 +128,20 @@ impl Survey {
         self.rows_left = 0;
     }
 
+    /// Whether no single level tells the ink, as far as all rows say, and the picture is small enough to be
+    /// evened.
+    pub(crate) fn is_uneven(&self) -> bool {
+        let pixels = self.width as u64 * u64::from(self.height);
+        pixels <= Evened::MAX_PIXELS && self.needs_more_than_a_level()
+    }
+
+    /// The same of a picture of any size.
+    pub(crate) fn needs_more_than_a_level(&self) -> bool {
+        self.evenness
+            .as_ref()
+            .is_some_and(|evenness| self.seen.has_greys && !evenness.is_even(&self.histogram))
+    }
+
     /// What is ink, now that all rows are known; `None` for an empty sheet (one level, or below the least
     /// contrast). Rows that never came count as nothing.
     #[must_use]
@@ -122,7 +150,7 @@ impl Survey {
         let has_greys = self.seen.has_greys;
         let half_covered = half_covered(&self.histogram.counts());
         let level = match method {
-            ThresholdMethod::Otsu => self.histogram.otsu(min_contrast)?,
+            ThresholdMethod::Auto | ThresholdMethod::Otsu => self.histogram.otsu(min_contrast)?,
             ThresholdMethod::Level(level) => level,
             ThresholdMethod::Adaptive => {
                 if !self.levels.is_empty() {

@@ -6,7 +6,7 @@
 
 use crate::parallel::each;
 use crate::{
-    ink::{RowThreshold, Survey},
+    ink::{Evened, RowThreshold, Survey},
     picture::{Bitmap, Gray},
 };
 use core::{fmt, str};
@@ -25,8 +25,8 @@ pub enum Polarity {
     LightInk,
 }
 
-/// Where the level comes from. In text, and with the feature `serde`, `otsu`, `adaptive`, or the number of a
-/// level.
+/// Where the level comes from. In text, and with the feature `serde`, `auto`, `otsu`, `adaptive`, or the number
+/// of a level.
 ///
 /// ```
 /// # use plotter_vector::ThresholdMethod;
@@ -34,13 +34,19 @@ pub enum Polarity {
 /// assert_eq!("128".parse(), Ok(ThresholdMethod::Level(128)));
 /// assert_eq!(
 ///     "256".parse::<ThresholdMethod>().unwrap_err().to_string(),
-///     "threshold: 256 is neither otsu, adaptive nor a level from 0 to 255"
+///     "threshold: 256 is neither auto, otsu, adaptive nor a level from 0 to 255"
 /// );
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ThresholdMethod {
-    /// One level for the whole sheet, [`Histogram::otsu`](crate::picture::Histogram::otsu).
+    /// [`ThresholdMethod::Otsu`] where one level tells ink from paper all over the picture. Else, as in a
+    /// photograph, of pencil, of faint lines or on ruled paper, the picture is evened first: the paper is
+    /// measured around each place, ink is half as dark as the darkest there and stands out of the noise, and
+    /// what is much paler than the lines, or a speck, is left out. [`Look`](crate::ink::Look) tells what was
+    /// found. Pictures of more than 64 megapixels get [`ThresholdMethod::Adaptive`] instead.
     #[default]
+    Auto,
+    /// One level for the whole sheet, [`Histogram::otsu`](crate::picture::Histogram::otsu).
     Otsu,
     /// For uneven light, such as a photographed sheet: each level is divided by that of the paper in the same
     /// place, and Otsu's level taken there. Where the paper's level comes from is measured in tiles of
@@ -65,7 +71,7 @@ pub struct ThresholdMethodError {
 
 impl fmt::Display for ThresholdMethodError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "threshold: {} is neither otsu, adaptive nor a level from 0 to 255", self.text)
+        write!(f, "threshold: {} is neither auto, otsu, adaptive nor a level from 0 to 255", self.text)
     }
 }
 
@@ -74,6 +80,7 @@ impl core::error::Error for ThresholdMethodError {}
 impl fmt::Display for ThresholdMethod {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Auto => f.write_str("auto"),
             Self::Otsu => f.write_str("otsu"),
             Self::Adaptive => f.write_str("adaptive"),
             Self::Level(level) => level.fmt(f),
@@ -86,6 +93,7 @@ impl str::FromStr for ThresholdMethod {
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         match text {
+            "auto" => Ok(Self::Auto),
             "otsu" => Ok(Self::Otsu),
             "adaptive" => Ok(Self::Adaptive),
             _ => text.parse().map(Self::Level).map_err(|_| ThresholdMethodError { text: text.to_owned() }),
@@ -111,7 +119,7 @@ impl<'de> serde::Deserialize<'de> for ThresholdMethod {
             type Value = ThresholdMethod;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("otsu, adaptive or a level from 0 to 255")
+                f.write_str("auto, otsu, adaptive or a level from 0 to 255")
             }
 
             fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Self::Value, E> {
@@ -149,14 +157,23 @@ pub struct Threshold {
     /// empty sheet with noise, and nothing is ink. Not asked when the level is given. In uneven light ink is
     /// at least half as far from the paper, too.
     pub min_contrast: u8,
+    /// Whether [`ThresholdMethod::Auto`] takes what is much paler than the lines for ink, too: the ruling of
+    /// paper, and what shines through it.
+    pub keep_pale: bool,
 }
 
 impl Default for Threshold {
-    /// Otsu's level; 24 levels of contrast, a hard pencil's faintest line, where a scanner's noise has 2
+    /// The method by itself; 24 levels of contrast, a hard pencil's faintest line, where a scanner's noise has 2
     /// to 8. Tiles of 32 px: 1.4 mm at 600 dots per inch, wide enough for lines of 1 mm, for half of a tile
     /// may be ink, and the tiles around serve where it is more.
     fn default() -> Self {
-        Self { polarity: Polarity::Minority, method: ThresholdMethod::Otsu, window_px: 32, min_contrast: 24 }
+        Self {
+            polarity: Polarity::Minority,
+            method: ThresholdMethod::Auto,
+            window_px: 32,
+            min_contrast: 24,
+            keep_pale: false,
+        }
     }
 }
 
@@ -196,12 +213,35 @@ impl Threshold {
         };
         let mut survey = Survey::checked(self, gray.width(), gray.height());
         survey.push_all(gray.pixels());
+        if survey.is_uneven() {
+            let (evened, settings) = self.evened(gray);
+            let (ink, split) = settings.apply(&evened.gray);
+            return (ink, split.map(|split| Split { ink_is_dark: !evened.look.light_ink, ..split }));
+        }
         let Some(rows) = survey.finish() else {
             return (ink, None);
         };
         fill(&rows, gray, &mut ink);
         let split = rows.split(ink.count());
         (ink, Some(split))
+    }
+}
+
+impl Threshold {
+    /// Whether no single level tells the ink of a picture, and none is asked for.
+    pub(crate) fn is_uneven(self, gray: &Gray) -> bool {
+        self.method == ThresholdMethod::Auto && {
+            let mut survey = Survey::checked(self, gray.width(), gray.height());
+            survey.push_all(gray.pixels());
+            survey.is_uneven()
+        }
+    }
+
+    /// A picture that was found uneven as if its ink were black, and what tells the ink there.
+    pub(crate) fn evened(self, gray: &Gray) -> (Evened, Self) {
+        let evened = Evened::of(gray, self.polarity, self.keep_pale);
+        let method = ThresholdMethod::Level(Evened::LEVEL);
+        (evened, Self { polarity: Polarity::DarkInk, method, ..self })
     }
 }
 

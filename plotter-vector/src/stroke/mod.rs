@@ -4,6 +4,7 @@ pub(crate) mod clip_to_picture;
 mod cubic;
 pub(crate) mod curve;
 mod drawing;
+pub(crate) mod join_gaps;
 pub(crate) mod on_sheet;
 mod pre_elimination;
 pub(crate) mod simplify;

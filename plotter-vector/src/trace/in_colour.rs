@@ -7,7 +7,7 @@ use crate::{
     picture::{Bitmap, Colour, Pixel},
     report::ErrorTally,
     stroke::Drawing,
-    trace::{Algorithm, Progress, VectorizeError, Vectorized, Vectorizer},
+    trace::{Progress, VectorizeError, Vectorized, Vectorizer},
 };
 
 /// Where the work has come to when the pens are told apart, when they have their strokes, and when these are
@@ -92,9 +92,7 @@ impl Vectorizer {
             openings.push(areas);
             tracing.at(done, of)?;
         }
-        if self.algorithm == Algorithm::Ours {
-            drawing = self.order.apply(&drawing);
-        }
+        (drawing, _) = self.in_order(drawing, None);
         progress.part(ORDERED).at(1, 1)?;
         let (mut tally, mut beyond) = (ErrorTally::default(), Beyond::default());
         let mut measuring = progress.part(1.0);
@@ -106,7 +104,7 @@ impl Vectorizer {
             beyond = beyond.and(of_pen);
             measuring.at(done, of)?;
         }
-        let traced = Vectorized { drawing, error: tally.report(), beyond, split: None, removed };
+        let traced = Vectorized { drawing, error: tally.report(), beyond, split: None, look: None, removed };
         Ok(VectorizedColour { traced, palette: layers.palette().clone(), inks, worst: tally.worst() })
     }
 }

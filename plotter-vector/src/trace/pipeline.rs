@@ -12,11 +12,12 @@ use crate::raster::straight_on::{GoneOn, straight_on};
 use crate::report::coverage::{AreaPen, Beyond, Index, add_coverage, beyond_hairlines, with_widths};
 use crate::report::covered_figures::Covered;
 use crate::stroke::clip_to_picture::within;
+use crate::stroke::join_gaps::{join_gaps, without_short};
 use crate::stroke::simplify::SegmentKinds;
 use crate::trace::bare_ink::BareInk;
 use crate::{
     areas::{AreaError, AreaPath, AreaStyle, Areas},
-    ink::{Despeckled, PensError, Split, Threshold, despeckle, smallest_mark_px},
+    ink::{Despeckled, Evened, Look, PensError, Split, Threshold, despeckle, smallest_mark_px},
     order::{Lettering, Order},
     picture::{Bitmap, Figures, Gray, Pixel},
     raster::{OrderedTracking, ThinningMethod, TooManyFigures},
@@ -117,6 +118,11 @@ pub struct Vectorizer {
     pub thinning: ThinningMethod,
     /// Ours: how areas are drawn.
     pub areas: Areas,
+    /// Ours: strokes that go on in each other beyond a gap of so much become one, px; 0 for none. In a
+    /// picture whose strokes have grain and gaps, 0 stands for some widths of its lines.
+    pub gap_px: f64,
+    /// Ours: strokes shorter than this are left out, px; 0 for none.
+    pub min_stroke_px: f64,
     /// Ours: the order of the strokes.
     pub order: Order,
     /// Ours: rows that are worked on at a time. A measure of memory alone: it changes no result.
@@ -141,6 +147,8 @@ impl Default for Vectorizer {
             max_line_px: None,
             thinning: ThinningMethod::default(),
             areas: Areas { style: AreaStyle::Outline, pen_px: 1.0 },
+            gap_px: 0.0,
+            min_stroke_px: 0.0,
             order: Order { lettering: Some(Lettering::default()), ..Order::default() },
             band_rows: 2048,
         }
@@ -159,6 +167,8 @@ pub struct Vectorized {
     pub beyond: Beyond,
     /// How ink was told from paper; `None` for an empty sheet, or for a picture that came as a bitmap.
     pub split: Option<Split>,
+    /// What was found of a picture whose ink no single level tells from its paper.
+    pub look: Option<Look>,
     /// What was taken for dirt, and is not drawn: no error is told of it.
     pub removed: Despeckled,
 }
@@ -166,6 +176,9 @@ pub struct Vectorized {
 /// Most ink of a picture that is vectorized: 2²⁵ px, five times the lines of a dense A0 sheet at 300 dots per
 /// inch, take 6 s and 0.9 GB.
 pub const MAX_INK_PIXELS: u64 = 1 << 25;
+
+/// Gaps in strokes with grain that are drawn over, in widths of the lines.
+const GAP_WIDTHS: f64 = 3.0;
 
 /// Why a picture cannot be vectorized.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -237,10 +250,28 @@ impl Vectorizer {
     /// # Errors
     /// [`VectorizeError`].
     pub fn vectorize(&self, gray: &Gray) -> Result<Vectorized, VectorizeError> {
+        if self.threshold.is_uneven(gray) {
+            let (evened, settings) = self.evened(gray);
+            let look = Some(evened.look);
+            return Ok(Vectorized { look, ..settings.vectorize(&evened.gray)? });
+        }
         let (ink, split) = self.threshold.apply(gray);
         // Of two levels the ink says all: its rims are no more exact, and dirt that was taken out is no rim.
         let grey = split.filter(|split| split.has_greys).map(|split| (gray, split.ink_is_dark));
         Ok(Vectorized { split, ..self.trace_ink(ink, grey)? })
+    }
+
+    /// A picture that was found uneven as if its ink were black, and the settings that trace it.
+    pub(crate) fn evened(&self, gray: &Gray) -> (Evened, Self) {
+        let (evened, threshold) = self.threshold.evened(gray);
+        // The rims of what a camera or a pencil made are ragged: ink that is bare there is worth no stroke.
+        let prefer = if self.prefer == Prefer::Both { Prefer::Strokes } else { self.prefer };
+        let gap_px = if evened.look.broken && self.gap_px == 0.0 {
+            GAP_WIDTHS * f64::from(evened.look.line_px)
+        } else {
+            self.gap_px
+        };
+        (evened, Self { threshold, prefer, gap_px, ..*self })
     }
 
     /// The ink of a picture that is vectorized: told from the paper and, by ours, without dirt.
@@ -272,9 +303,16 @@ impl Vectorizer {
     fn trace_ink(&self, mut ink: Bitmap, grey: Option<(&Gray, bool)>) -> Result<Vectorized, VectorizeError> {
         let Unordered { drawing, errors, areas, removed } = self.unordered(&mut ink, grey)?;
         let (drawing, errors) = self.completed(drawing, errors, &ink, areas.as_ref());
-        let drawing = if self.algorithm == Algorithm::Ours { self.order.apply(&drawing) } else { drawing };
+        let (drawing, errors) = self.in_order(drawing, errors);
         let errors = self.known_or_measured(errors, &ink, &drawing, areas.as_ref());
-        Ok(Vectorized { drawing, error: errors.report, beyond: errors.beyond, split: None, removed })
+        Ok(Vectorized {
+            drawing,
+            error: errors.report,
+            beyond: errors.beyond,
+            split: None,
+            look: None,
+            removed,
+        })
     }
 
     /// The strokes, with more for the ink that those of ours leave bare. The errors stay known only where
@@ -299,6 +337,27 @@ impl Vectorizer {
         let errors = errors.filter(|_| added.is_empty());
         added.into_iter().for_each(|stroke| drawing.push_curve(1, within(stroke, ink.width(), ink.height())));
         (drawing, errors)
+    }
+
+    /// The strokes of ours joined over gaps, without short ones, and in their order. What is left out makes
+    /// errors that are no longer known.
+    pub(crate) fn in_order(
+        &self,
+        mut drawing: Drawing,
+        errors: Option<SheetErrors>,
+    ) -> (Drawing, Option<SheetErrors>) {
+        if self.algorithm == Algorithm::Published {
+            return (drawing, errors);
+        }
+        if self.gap_px > 0.0 {
+            drawing = join_gaps(drawing, self.gap_px);
+        }
+        let mut errors = errors;
+        if self.min_stroke_px > 0.0 {
+            drawing = without_short(drawing, self.min_stroke_px);
+            errors = None;
+        }
+        (self.order.apply(&drawing), errors)
     }
 
     /// Whether strokes are added for what is bare.

@@ -20,9 +20,10 @@ use crate::report::coverage::AreaPen;
 use crate::stroke::clip_to_picture::within;
 use crate::trace::pipeline::Unordered;
 use crate::{
-    ink::{Despeckled, Split, Survey},
+    ink::{Despeckled, Look, Split, Survey, Threshold, ThresholdMethod},
     picture::{
-        Bitmap, DecodeError, Depth, MAX_PIXELS, MAX_SHEET_ROWS, MAX_SIDE_PX, Row, RowSource, SizeError,
+        Bitmap, DecodeError, Depth, Gray, GrayRows, MAX_PIXELS, MAX_SHEET_ROWS, MAX_SIDE_PX, Row, RowSource,
+        SizeError,
     },
     stroke::Drawing,
     trace::{Algorithm, Cancelled, Progress, VectorizeError, Vectorizer},
@@ -40,6 +41,8 @@ pub struct TracedSheet {
     pub drawing: Drawing,
     /// How ink was told from paper; `None` for an empty sheet.
     pub split: Option<Split>,
+    /// What was found of a picture whose ink no single level tells from its paper.
+    pub look: Option<Look>,
     /// Ink of the sheet as it came, px.
     pub ink_pixels: u64,
     /// Width of the pen, px; `None` when there are no lines.
@@ -215,6 +218,18 @@ impl Vectorizer {
         let errors = with_errors.then(SheetErrors::default);
         let empty = TracedSheet { drawing: Drawing::new(width, height), errors, ..TracedSheet::default() };
         let (survey, survey_of_black) = survey(self, source, &mut progress.part(0.1))?;
+        if survey.is_uneven() {
+            let gray = whole_of(source, &mut progress.part(0.2))?;
+            let (evened, settings) = self.evened(&gray);
+            drop(gray);
+            let mut rows = GrayRows::new(evened.gray);
+            let found = settings.traced_rows(&mut rows, with_errors, &mut progress.part(1.0))?;
+            return Ok(TracedSheet { look: Some(evened.look), ..found });
+        }
+        if survey.needs_more_than_a_level() {
+            let threshold = Threshold { method: ThresholdMethod::Adaptive, ..self.threshold };
+            return Self { threshold, ..*self }.traced_rows(source, with_errors, &mut progress.part(1.0));
+        }
         let Some(threshold) = survey.finish() else { return Ok(empty) };
         // Of 1 bit a pixel black is nearly always the ink: then all is known already.
         let (pen, ink_pixels) = match source.depth() {
@@ -267,7 +282,7 @@ impl Vectorizer {
                 drawing.push_curve(1, within(stroke, width, height));
             }
         }
-        let drawing = self.order.apply(&drawing);
+        let (drawing, _) = self.in_order(drawing, None);
         let errors =
             if with_errors { Some(measure.errors(source, &drawing, &mut progress.part(1.0))?) } else { None };
         Ok(TracedSheet { drawing, errors, removed, ..found })
@@ -281,7 +296,7 @@ impl Vectorizer {
     ) -> Result<(Drawing, Option<SheetErrors>, Despeckled), SheetError> {
         let Unordered { drawing, errors, areas, removed } = self.unordered(&mut ink, None)?;
         let (drawing, errors) = self.completed(drawing, errors, &ink, areas.as_ref());
-        let drawing = if self.algorithm == Algorithm::Ours { self.order.apply(&drawing) } else { drawing };
+        let (drawing, errors) = self.in_order(drawing, errors);
         let errors = with_errors.then(|| self.known_or_measured(errors, &ink, &drawing, areas.as_ref()));
         Ok((drawing, errors, removed))
     }
@@ -302,6 +317,20 @@ fn for_each_row(
         progress.at(y.into(), height)?;
     }
     Ok(())
+}
+
+/// All rows at once, of grey levels.
+fn whole_of(source: &mut impl RowSource, progress: &mut Progress<'_>) -> Result<Gray, SheetError> {
+    let (width, height) = (source.width(), source.height());
+    let mut levels = Vec::new();
+    for_each_row(source, progress, |_, row| {
+        if let Row::Grey(row) = row {
+            levels.extend_from_slice(row);
+        }
+        Ok(())
+    })?;
+    levels.resize(width as usize * height as usize, u8::MAX);
+    Ok(Gray::of_checked_size(width, height, levels))
 }
 
 /// The first pass: what is ink, and of 1 bit a pixel the pen, were the ink black.

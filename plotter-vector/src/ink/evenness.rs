@@ -1,0 +1,148 @@
+//! [`Evenness`]: whether one level tells ink from paper all over a picture.
+
+use crate::picture::Histogram;
+use crate::picture::histogram::otsu;
+
+/// Pixels that are looked at, about: rows of a larger picture are left out, evenly.
+const LOOKED_AT: u64 = 1 << 22;
+
+/// Smaller pictures have too few rims to count, px: one level is taken.
+const LEAST_PIXELS: u64 = 1 << 12;
+
+/// Least distance of the mean ink from the mean paper, levels: below it noise blurs what is counted here.
+const LEAST_CONTRAST: f64 = 60.0;
+
+/// Places between the mean of the dark and that of the light levels, in parts of the way, where the lines must have as
+/// many rims as at the level itself; and by how many parts they may differ.
+const BETWEEN: [f64; 6] = [0.3, 0.4, 0.5, 0.6, 0.7, 0.8];
+const RIMS_DIFFER: f64 = 0.07;
+
+/// And by so many rims in any case.
+const FEW_RIMS: f64 = 4.0;
+
+/// How far from its mean the paper's outer quarter begins at most, as a part of the contrast: light that falls off puts
+/// it far.
+const PAPER_SPREADS: f64 = 0.15;
+
+/// Counts, for each level, the neighbours in a row between which it lies: the rims of lines at that level.
+///
+/// A line that is darker than the paper has its two rims at whichever level between them one looks: so the number is
+/// the same all over the gap. Noise and grain add rims, faint lines add theirs to the levels near the paper only, and a
+/// shadow takes the paper over the level.
+#[derive(Clone, Debug)]
+pub(crate) struct Evenness {
+    every: u32,
+    pixels: u64,
+    /// How many more rims a level has than the one before.
+    more: [i64; 256],
+}
+
+impl Evenness {
+    pub(crate) fn new(width: u32, height: u32) -> Self {
+        let pixels = u64::from(width) * u64::from(height);
+        let every = u32::try_from(pixels / LOOKED_AT).unwrap_or(u32::MAX).saturating_add(1);
+        Self { every, pixels, more: [0; 256] }
+    }
+
+    /// Row `y` of the picture.
+    pub(crate) fn push(&mut self, y: u32, levels: &[u8]) {
+        if !y.is_multiple_of(self.every) {
+            return;
+        }
+        let mut add = |level: u8, n: i64| {
+            if let Some(more) = self.more.get_mut(usize::from(level)) {
+                *more += n;
+            }
+        };
+        for (one, other) in levels.iter().zip(levels.iter().skip(1)).filter(|(one, other)| one != other) {
+            add(*one.min(other), 1);
+            add(*one.max(other), -1);
+        }
+    }
+
+    /// Whether one level serves, for a picture with these levels.
+    #[expect(clippy::cast_precision_loss, reason = "a picture's pixels")]
+    pub(crate) fn is_even(&self, histogram: &Histogram) -> bool {
+        let counts = histogram.counts();
+        let (Some(level), false) = (otsu(&counts, 0), self.pixels < LEAST_PIXELS) else { return true };
+        let levels = || (0_u16..).zip(counts);
+        let mean = |is_dark: bool| {
+            let class = || levels().filter(move |(at, _)| (*at <= u16::from(level)) == is_dark);
+            let pixels: u64 = class().map(|(_, n)| n).sum();
+            (class().map(|(at, n)| f64::from(at) * n as f64).sum::<f64>() / pixels.max(1) as f64, pixels)
+        };
+        let ((dark, dark_pixels), (light, light_pixels)) = (mean(true), mean(false));
+        let contrast = light - dark;
+        if contrast < LEAST_CONTRAST {
+            return false;
+        }
+        let rims_at = |level: u8| self.more.iter().take(usize::from(level) + 1).sum::<i64>() as f64;
+        let rims = rims_at(level);
+        let are_same = BETWEEN.iter().all(|part| {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between two levels")]
+            let between = (dark + contrast * part) as u8;
+            (rims_at(between) - rims).abs() <= RIMS_DIFFER * rims + FEW_RIMS
+        });
+        // The quarter of the paper that is nearest to the ink.
+        let light_paper = light_pixels >= dark_pixels;
+        let (paper, pixels) = if light_paper { (light, light_pixels) } else { (dark, dark_pixels) };
+        let mut outer = 0;
+        let mut is_outer = |n: u64| {
+            outer += n;
+            4 * outer >= pixels
+        };
+        let from = if light_paper {
+            levels().skip(usize::from(level) + 1).find(|(_, n)| is_outer(*n))
+        } else {
+            (0_u16..=u16::from(level))
+                .rev()
+                .zip(counts.iter().copied().take(usize::from(level) + 1).rev())
+                .find(|(_, n)| is_outer(*n))
+        };
+        let quarter = from.map_or(paper, |(at, _)| f64::from(at));
+        are_same && (quarter - paper).abs() <= PAPER_SPREADS * contrast
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether a picture of 100 x 100 px of these levels is even.
+    fn is_even(level: impl Fn(u32, u32) -> u8) -> bool {
+        let mut histogram = Histogram::default();
+        let mut evenness = Evenness::new(100, 100);
+        for y in 0..100 {
+            let row: Vec<u8> = (0..100).map(|x| level(x, y)).collect();
+            histogram.push(&row);
+            evenness.push(y, &row);
+        }
+        evenness.is_even(&histogram)
+    }
+
+    #[test]
+    fn black_lines_on_white_are_even_and_so_are_grey_rims() {
+        assert!(is_even(|x, _| if x % 20 == 7 { 0 } else { 255 }));
+        assert!(is_even(|x, _| match x % 20 {
+            7 => 10,
+            6 | 8 => 130,
+            _ => 250,
+        }));
+        assert!(is_even(|_, _| 77));
+    }
+
+    #[test]
+    fn a_pale_line_a_shadow_and_noise_are_not() {
+        // Half of the lines are pale.
+        assert!(!is_even(|x, _| match x % 40 {
+            7 => 0,
+            27 => 170,
+            _ => 255,
+        }));
+        // The light falls off to a half, and ink with it.
+        let shadow = |x: u32| 255 - u8::try_from(x).unwrap() * 5 / 4;
+        assert!(!is_even(|x, _| if x % 20 == 7 { shadow(x) / 2 } else { shadow(x) }));
+        let noise = |x: u32, y: u32| u8::try_from((x * 37 + y * 101) % 97).unwrap();
+        assert!(!is_even(|x, y| if x % 20 == 7 { 40 } else { 120 } + noise(x, y)));
+    }
+}
