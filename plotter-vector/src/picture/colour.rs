@@ -129,12 +129,17 @@ impl From<&Colour> for Gray {
 /// assert_eq!(colour_on_white([255, 0, 0, 51]), Rgb([255, 204, 204])); // a fifth
 /// ```
 #[must_use]
-pub fn colour_on_white([red, green, blue, alpha]: [u8; 4]) -> Rgb {
+pub fn colour_on_white(colour: [u8; 4]) -> Rgb {
+    Rgb(colour_on(u8::MAX, colour))
+}
+
+/// The same on paper of any level.
+pub(crate) fn colour_on(paper: u8, [red, green, blue, alpha]: [u8; 4]) -> [u8; 3] {
     let alpha = u32::from(alpha);
-    Rgb([red, green, blue].map(|channel| {
-        let level = (u32::from(channel) * alpha + 255 * (255 - alpha) + 127) / 255;
+    [red, green, blue].map(|channel| {
+        let level = (u32::from(channel) * alpha + u32::from(paper) * (255 - alpha) + 127) / 255;
         u8::try_from(level).unwrap_or(u8::MAX)
-    }))
+    })
 }
 
 #[cfg(test)]

@@ -1,8 +1,11 @@
 //! [`decode`]: a picture file as grey levels, and [`decode_colour`], in colour.
 
 use crate::picture::bitmap::{MAX_PIXELS, MAX_SIDE_PX};
-use crate::picture::file_rows::{colour_by_rows, one_line};
-use crate::picture::{Colour, DecodeError, FileRows, Gray, SizeError, colour_on_white, gray_on_white};
+use crate::picture::colour::colour_on;
+use crate::picture::file_rows::{colours, one_line};
+use crate::picture::gray::gray_on;
+use crate::picture::ground::{Ground, GroundSurvey};
+use crate::picture::{Colour, DecodeError, FileFormat, FileNotes, FileRows, Gray, SizeError};
 use core::fmt;
 use image::{DynamicImage, GenericImageView, ImageError, ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
@@ -11,15 +14,17 @@ use std::io::Cursor;
 /// bytes.
 const MAX_ALLOC_BYTES: u64 = 8 * MAX_PIXELS;
 
-/// Decodes a PNG, JPEG, TIFF, PBM, PGM or PPM picture; the format is told from the bytes, not from a name.
+/// Decodes a PNG, JPEG, TIFF, WebP, BMP, GIF, PBM, PGM or PPM picture; the format is told from the bytes, not
+/// from a name. Of several pages, or of one that moves, it is the first.
 ///
-/// Colours become luma, 16 bits become 8, and what is transparent shows white paper ([`gray_on_white`]). The
-/// size is checked before the pixels are decoded: [`MAX_SIDE_PX`] a side and [`MAX_PIXELS`] in all;
-/// [`FileRows`] reads larger ones by rows.
+/// The picture comes upright, as EXIF and TIFF say. Colours become luma, 16 bits become 8. What is
+/// transparent shows white paper, or black where only light lines are drawn ([`Ground`]). The size is checked
+/// before the pixels are decoded: [`MAX_SIDE_PX`] a side and [`MAX_PIXELS`] in all; [`FileRows`] reads larger
+/// ones by rows. What the file says of itself stands in [`FileRows::notes`].
 ///
 /// # Errors
-/// [`DecodeError`]; never a panic. What is stored by rows takes a byte a pixel; JPEG and interlaced PNG never
-/// more than 9 bytes a pixel of the largest picture: 8 decoded, 1 as grey.
+/// [`DecodeError`]; never a panic. What is stored by rows takes a byte a pixel, and as much again to be
+/// turned; what is not never more than 9 bytes a pixel of the largest picture: 8 decoded, 1 as grey.
 ///
 /// ```
 /// # use plotter_vector::decode;
@@ -32,12 +37,11 @@ pub fn decode(bytes: &[u8]) -> Result<Gray, DecodeError> {
     FileRows::new(Cursor::new(bytes))?.into_gray()
 }
 
-/// As [`decode`], in colour: greys become three equal channels, palettes are looked up, 16 bits become 8, and
-/// what is transparent shows white paper ([`colour_on_white`]).
+/// As [`decode`], in colour: greys become three equal channels, palettes are looked up, 16 bits become 8.
 ///
 /// # Errors
-/// [`DecodeError`]; never a panic. What is stored by rows takes 3 bytes a pixel; JPEG and interlaced PNG
-/// never more than 11 bytes a pixel of the largest picture: 8 decoded, 3 in colour.
+/// [`DecodeError`]; never a panic. What is stored by rows takes 3 bytes a pixel, and as much again to be
+/// turned; what is not never more than 11 bytes a pixel of the largest picture: 8 decoded, 3 in colour.
 ///
 /// ```
 /// # use plotter_vector::decode_colour;
@@ -46,46 +50,93 @@ pub fn decode(bytes: &[u8]) -> Result<Gray, DecodeError> {
 /// # Ok::<(), plotter_vector::DecodeError>(())
 /// ```
 pub fn decode_colour(bytes: &[u8]) -> Result<Colour, DecodeError> {
-    if let Some(picture) = colour_by_rows(bytes)? {
-        return Ok(picture);
-    }
-    let (width, height, channels) = to_colour(picture(bytes)?);
-    Colour::new(width, height, channels).map_err(|error| damaged(bytes, &error))
+    decode_page_in_colour(bytes, 1).map(|(picture, _)| picture)
 }
 
-/// Decodes a picture that is not stored by rows: JPEG, interlaced PNG and PAM.
-pub(crate) fn decode_whole(bytes: &[u8]) -> Result<Gray, DecodeError> {
-    let (width, height, levels) = to_gray(picture(bytes)?);
-    Gray::new(width, height, levels).map_err(|error| damaged(bytes, &error))
+/// As [`decode_colour`], of a page, 1 is the first, and with what the file says of itself.
+///
+/// # Errors
+/// [`DecodeError::NoSuchPage`], and as for [`decode_colour`].
+pub fn decode_page_in_colour(bytes: &[u8], page: u32) -> Result<(Colour, FileNotes), DecodeError> {
+    colours(bytes, page)
+}
+
+/// Decodes a picture that is not stored by rows, as levels, and what it was laid on if it is transparent.
+pub(crate) fn decode_whole(
+    bytes: &[u8],
+    format: FileFormat,
+    size: (u32, u32),
+) -> Result<(Vec<u8>, Option<Ground>), DecodeError> {
+    let picture = picture(bytes, format, size)?;
+    let ground = ground(&picture);
+    Ok((to_gray(picture, ground.unwrap_or_default()), ground))
+}
+
+/// The same in colour, three channels a pixel.
+pub(crate) fn colours_of_whole(
+    bytes: &[u8],
+    format: FileFormat,
+    size: (u32, u32),
+) -> Result<(Vec<u8>, Option<Ground>), DecodeError> {
+    let picture = picture(bytes, format, size)?;
+    let ground = ground(&picture);
+    Ok((to_channels(picture, ground.unwrap_or_default()), ground))
 }
 
 fn damaged(bytes: &[u8], error: &dyn fmt::Display) -> DecodeError {
     DecodeError::Damaged { length: bytes.len() as u64, what: one_line(error) }
 }
 
-/// The picture as the file has it, of a size that a picture may have.
-fn picture(bytes: &[u8]) -> Result<DynamicImage, DecodeError> {
-    let damaged = |error: &dyn fmt::Display| damaged(bytes, error);
-    let reader =
-        || ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| damaged(&error));
-    // The header first: a picture of a size that is refused must not be decoded at all.
-    let (width, height) = reader()?.into_dimensions().map_err(|error| damaged(&error))?;
-    SizeError::check(width, height).map_err(DecodeError::TooLarge)?;
-    let refused = |error: ImageError| match error {
-        ImageError::Unsupported(error) => DecodeError::Unsupported { what: one_line(&error) },
-        ImageError::Limits(_) => DecodeError::TooMuchMemory { bytes: MAX_ALLOC_BYTES },
-        other => damaged(&other),
+fn reader(bytes: &[u8], format: FileFormat) -> ImageReader<Cursor<&[u8]>> {
+    let format = match format {
+        FileFormat::Png => ImageFormat::Png,
+        FileFormat::Jpeg => ImageFormat::Jpeg,
+        FileFormat::Tiff => ImageFormat::Tiff,
+        FileFormat::WebP => ImageFormat::WebP,
+        FileFormat::Bmp => ImageFormat::Bmp,
+        FileFormat::Gif => ImageFormat::Gif,
+        FileFormat::Pnm => ImageFormat::Pnm,
     };
-    if reader()?.format() == Some(ImageFormat::Jpeg) && !jpeg_has_its_end(bytes) {
-        return Err(damaged(&"a JPEG without its end mark"));
+    ImageReader::with_format(Cursor::new(bytes), format)
+}
+
+/// Why the decoder of a format does not go on.
+fn refused(bytes: &[u8], error: &ImageError) -> DecodeError {
+    match error {
+        ImageError::Unsupported(error) => DecodeError::Unsupported { what: one_line(error) },
+        ImageError::Limits(_) => DecodeError::TooMuchMemory { bytes: MAX_ALLOC_BYTES },
+        other => damaged(bytes, other),
+    }
+}
+
+/// The size of a picture that is not stored by rows, from its header: one that is refused must not be decoded
+/// at all.
+pub(crate) fn size_of_whole(bytes: &[u8], format: FileFormat) -> Result<(u32, u32), DecodeError> {
+    let (width, height) = reader(bytes, format).into_dimensions().map_err(|error| refused(bytes, &error))?;
+    SizeError::check(width, height).map_err(DecodeError::TooLarge)?;
+    Ok((width, height))
+}
+
+/// The picture as the file has it, of the size that its header said.
+fn picture(bytes: &[u8], format: FileFormat, size: (u32, u32)) -> Result<DynamicImage, DecodeError> {
+    if format == FileFormat::Jpeg && !jpeg_has_its_end(bytes) {
+        return Err(damaged(bytes, &"a JPEG without its end mark"));
+    }
+    // What says how it is turned may stand behind the pixels.
+    if format == FileFormat::WebP && webp_is_cut_off(bytes) {
+        return Err(damaged(bytes, &"a WebP shorter than its header says"));
     }
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE_PX);
     limits.max_image_height = Some(MAX_SIDE_PX);
     limits.max_alloc = Some(MAX_ALLOC_BYTES);
-    let mut decoder = reader()?;
+    let mut decoder = reader(bytes, format);
     decoder.limits(limits);
-    decoder.decode().map_err(refused)
+    let picture = decoder.decode().map_err(|error| refused(bytes, &error))?;
+    if picture.dimensions() != size {
+        return Err(damaged(bytes, &"pixels of another size than the header says"));
+    }
+    Ok(picture)
 }
 
 /// Whether a JPEG's last scan is followed by the end mark; the decoder itself would fill what is missing with
@@ -100,36 +151,50 @@ fn jpeg_has_its_end(bytes: &[u8]) -> bool {
     bytes.get(scan..).unwrap_or(&[]).windows(2).any(|pair| pair == END)
 }
 
-/// Width, height and levels.
-fn to_gray(picture: DynamicImage) -> (u32, u32, Vec<u8>) {
+/// Whether a WebP is shorter than its RIFF header says.
+fn webp_is_cut_off(bytes: &[u8]) -> bool {
+    const HEADER_BYTES: u64 = 8;
+    let length = bytes.get(4..).and_then(|rest| rest.first_chunk()).copied().map_or(0, u32::from_le_bytes);
+    (bytes.len() as u64) < HEADER_BYTES + u64::from(length)
+}
+
+/// What a picture that may be transparent is laid on.
+fn ground(picture: &DynamicImage) -> Option<Ground> {
     let (width, height) = picture.dimensions();
-    let levels = match picture {
+    // The iterator of `image` panics where there are rows without columns.
+    if !picture.color().has_alpha() || width == 0 {
+        return None;
+    }
+    let mut survey = GroundSurvey::new(width, height);
+    picture.pixels().for_each(|(_, _, pixel)| survey.add(pixel.0));
+    Some(survey.ground())
+}
+
+fn to_gray(picture: DynamicImage, ground: Ground) -> Vec<u8> {
+    let (width, height) = picture.dimensions();
+    match picture {
         DynamicImage::ImageLuma8(gray) => gray.into_raw(),
-        // The iterator of `image` panics where there are rows without columns.
         _ if width == 0 => Vec::new(),
         // Pixel by pixel: a copy of the whole picture as RGBA would take half as much memory again.
         other => {
             let mut levels = Vec::with_capacity(width as usize * height as usize);
-            levels.extend(other.pixels().map(|(_, _, pixel)| gray_on_white(pixel.0)));
+            levels.extend(other.pixels().map(|(_, _, pixel)| gray_on(ground.level(), pixel.0)));
             levels
         }
-    };
-    (width, height, levels)
+    }
 }
 
-/// Width, height and channels.
-fn to_colour(picture: DynamicImage) -> (u32, u32, Vec<u8>) {
+fn to_channels(picture: DynamicImage, ground: Ground) -> Vec<u8> {
     let (width, height) = picture.dimensions();
-    let channels = match picture {
+    match picture {
         DynamicImage::ImageRgb8(colour) => colour.into_raw(),
         _ if width == 0 => Vec::new(),
         other => {
             let mut channels = Vec::with_capacity(3 * width as usize * height as usize);
-            channels.extend(other.pixels().flat_map(|(_, _, pixel)| colour_on_white(pixel.0).0));
+            channels.extend(other.pixels().flat_map(|(_, _, pixel)| colour_on(ground.level(), pixel.0)));
             channels
         }
-    };
-    (width, height, channels)
+    }
 }
 
 #[cfg(test)]
@@ -313,8 +378,8 @@ mod tests {
         let error = decode(b"IN;SP1;PU0,0;").unwrap_err();
         assert_eq!(
             error.to_string(),
-            "the picture begins with 49 4e 3b 53 50 31 3b 50, which is not PNG, JPEG, TIFF, PBM, PGM or PPM: \
-             save it as one of these"
+            "the picture begins with 49 4e 3b 53 50 31 3b 50, which is not PNG, JPEG, TIFF, WebP, BMP, GIF, \
+             PBM, PGM or PPM: save it as one of these"
         );
     }
 }

@@ -14,10 +14,19 @@ pub enum DecodeError {
     },
     /// No bytes at all.
     Empty,
-    /// Not PNG, JPEG, TIFF, PBM, PGM or PPM.
+    /// Not PNG, JPEG, TIFF, WebP, BMP, GIF, PBM, PGM or PPM.
     UnknownFormat {
         /// How the file begins.
         first_bytes: Vec<u8>,
+    },
+    /// A file of a kind that another program reads.
+    ReadElsewhere(OtherFile),
+    /// Fewer pictures in the file than were asked for.
+    NoSuchPage {
+        /// The page that was asked for, 1 is the first.
+        page: u32,
+        /// Pages of the file.
+        pages: u32,
     },
     /// A picture of a kind that is not read.
     Unsupported {
@@ -26,6 +35,8 @@ pub enum DecodeError {
     },
     /// Larger than a picture that is held whole may be.
     TooLarge(SizeError),
+    /// Stored turned or mirrored, and larger than a picture that is held whole, which turning asks for.
+    TurnedTooLarge(SizeError),
     /// More than [`MAX_SIDE_PX`] columns or [`MAX_SHEET_ROWS`] rows, which holds for reading by rows too.
     TooLong {
         /// Width, px.
@@ -56,6 +67,36 @@ pub enum DecodeError {
     },
 }
 
+/// A kind of file that is no picture of pixels, or one that is read by other programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum OtherFile {
+    /// SVG: strokes already.
+    Svg,
+    /// HEIC, HEIF or AVIF, as telephones write them.
+    Heif,
+    /// PDF or PostScript.
+    Pdf,
+}
+
+impl fmt::Display for OtherFile {
+    /// What it is, and what reads it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Svg => {
+                "this is an SVG drawing, whose lines need not be traced: `convert` reads it, in a program `read_svg`"
+            }
+            Self::Heif => {
+                "this is a HEIC or AVIF picture, which is not read: save it as JPEG or PNG, as with `heif-convert IN.heic OUT.jpg`"
+            }
+            Self::Pdf => {
+                "this is a PDF or PostScript file, which is not read: take its lines with `pdftocairo -svg IN.pdf OUT.svg`, or of a \
+                 scan its picture with `pdftoppm -png -r 300 IN.pdf OUT`"
+            }
+        })
+    }
+}
+
 impl fmt::Display for DecodeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -66,7 +107,18 @@ impl fmt::Display for DecodeError {
                 for byte in first_bytes {
                     write!(f, " {byte:02x}")?;
                 }
-                f.write_str(", which is not PNG, JPEG, TIFF, PBM, PGM or PPM: save it as one of these")
+                f.write_str(", which is not PNG, JPEG, TIFF, WebP, BMP, GIF, PBM, PGM or PPM: save it as one of these")
+            }
+            Self::ReadElsewhere(file) => file.fmt(f),
+            Self::NoSuchPage { page: 0, .. } => f.write_str("pages are counted from 1: there is no page 0"),
+            Self::NoSuchPage { page, pages: 1 } => {
+                write!(f, "there is no page {page}: the file has one picture, page 1")
+            }
+            Self::NoSuchPage { page, pages } => {
+                write!(
+                    f,
+                    "there is no page {page}: the file has {pages}, of which 1 to {pages} can be asked for"
+                )
             }
             Self::Unsupported { what } => write!(
                 f,
@@ -74,6 +126,10 @@ impl fmt::Display for DecodeError {
                  of CCITT group 4"
             ),
             Self::TooLarge(error) => error.fmt(f),
+            Self::TurnedTooLarge(error) => write!(
+                f,
+                "{error}; or save it upright: it is stored turned or mirrored, and only upright ones are read row by row"
+            ),
             Self::TooLong { width, height } => write!(
                 f,
                 "a picture of {width} x {height} px is too large: at most {MAX_SIDE_PX} px wide and {MAX_SHEET_ROWS} px high; \
@@ -110,7 +166,7 @@ impl fmt::Display for DecodeError {
 impl core::error::Error for DecodeError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match self {
-            Self::TooLarge(error) => Some(error),
+            Self::TooLarge(error) | Self::TurnedTooLarge(error) => Some(error),
             _ => None,
         }
     }

@@ -141,9 +141,19 @@ impl Gray {
 /// assert_eq!(gray_on_white([255, 0, 0, 255]), 76); // red: 0.299 · 255
 /// ```
 #[must_use]
-pub fn gray_on_white([red, green, blue, alpha]: [u8; 4]) -> u8 {
-    let luma = (299 * u32::from(red) + 587 * u32::from(green) + 114 * u32::from(blue) + 500) / 1000;
-    let alpha = u32::from(alpha);
-    let level = (luma * alpha + 255 * (255 - alpha) + 127) / 255;
+pub fn gray_on_white(colour: [u8; 4]) -> u8 {
+    gray_on(u8::MAX, colour)
+}
+
+/// The same on paper of any level.
+pub(crate) fn gray_on(paper: u8, [red, green, blue, alpha]: [u8; 4]) -> u8 {
+    let (level, alpha) = (u32::from(luma([red, green, blue])), u32::from(alpha));
+    let level = (level * alpha + u32::from(paper) * (255 - alpha) + 127) / 255;
     u8::try_from(level).unwrap_or(u8::MAX)
+}
+
+/// Luma by ITU-R BT.601, to nearest.
+pub(crate) fn luma([red, green, blue]: [u8; 3]) -> u8 {
+    let luma = (299 * u32::from(red) + 587 * u32::from(green) + 114 * u32::from(blue) + 500) / 1000;
+    u8::try_from(luma).unwrap_or(u8::MAX)
 }

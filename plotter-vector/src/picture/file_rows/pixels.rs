@@ -1,6 +1,9 @@
 //! [`Pixels`]: what the bytes of a row mean, and the way from there to a [`Row`].
 
-use crate::picture::{Depth, Row, colour_on_white, gray_on_white};
+use crate::picture::colour::colour_on;
+use crate::picture::gray::gray_on;
+use crate::picture::ground::{Ground, GroundSurvey};
+use crate::picture::{Depth, Row};
 
 /// The row that is given out.
 #[derive(Clone, Debug)]
@@ -66,6 +69,8 @@ pub(super) enum Pixels {
     /// A number a pixel, of 1, 2, 4 or 8 bits, the leftmost in the highest bits: an index into the levels
     /// and, for who asks for colours, into these.
     Table { bits: u8, levels: Box<[u8; 256]>, colours: Box<[[u8; 3]; 256]> },
+    /// The same with colours and alphas, until it is known what they are laid on.
+    ClearTable { bits: u8, colours: Box<[[u8; 4]; 256]> },
     /// Samples of 8 or 16 bits, `stride` of them a pixel; those behind the known channels mean nothing.
     Samples { channels: Channels, sample: Sample, stride: usize },
 }
@@ -83,11 +88,18 @@ impl Pixels {
         Self::Table { bits, levels: Box::new(levels), colours: Box::new(levels.map(|level| [level; 3])) }
     }
 
-    /// Numbers of `bits` bits whose colours and alphas are given. Where all are grey, it is a table of
-    /// levels.
+    /// Numbers of `bits` bits whose colours and alphas are given.
     pub(super) fn palette(bits: u8, colours: [[u8; 4]; 256]) -> Self {
-        let levels = colours.map(gray_on_white);
-        let colours = colours.map(|colour| colour_on_white(colour).0);
+        if colours.iter().any(|[.., alpha]| *alpha < u8::MAX) {
+            return Self::ClearTable { bits, colours: Box::new(colours) };
+        }
+        Self::palette_on(bits, &colours, Ground::White)
+    }
+
+    /// The same laid on a ground. Where all are grey, it is a table of levels.
+    fn palette_on(bits: u8, colours: &[[u8; 4]; 256], ground: Ground) -> Self {
+        let levels = colours.map(|colour| gray_on(ground.level(), colour));
+        let colours = colours.map(|colour| colour_on(ground.level(), colour));
         // Colours may have the levels of a plain grey scale, or of black and white, and be neither.
         if colours == levels.map(|level| [level; 3]) {
             return Self::table(bits, levels);
@@ -103,6 +115,58 @@ impl Pixels {
         })
     }
 
+    /// Whether some of it may be transparent.
+    pub(super) fn may_be_clear(&self) -> bool {
+        match self {
+            Self::Bits { .. } | Self::Table { .. } => false,
+            Self::ClearTable { .. } => true,
+            Self::Samples { channels, .. } => !matches!(channels, Channels::Grey | Channels::Rgb),
+        }
+    }
+
+    /// Lays it on a ground: from here on a table has no alphas. Samples are told at each row.
+    pub(super) fn lay_on(&mut self, ground: Ground) {
+        if let Self::ClearTable { bits, colours } = self {
+            *self = Self::palette_on(*bits, colours, ground);
+        }
+    }
+
+    /// Adds the `width` pixels that the bytes mean to what is known of a transparent picture.
+    pub(super) fn survey(&self, bytes: &[u8], width: u32, survey: &mut GroundSurvey) {
+        let width = width as usize;
+        match self {
+            Self::Bits { .. } | Self::Table { .. } => {}
+            Self::ClearTable { bits, colours } => {
+                let mut counts = [0_u64; 256];
+                for number in numbers(bytes, (*bits).clamp(1, 8).into()).take(width) {
+                    if let Some(count) = counts.get_mut(usize::from(number)) {
+                        *count += 1;
+                    }
+                }
+                for (colour, count) in colours.iter().zip(counts).filter(|(_, count)| *count > 0) {
+                    survey.add_many(*colour, count);
+                }
+            }
+            Self::Samples { channels, sample, stride } => {
+                let stride = (*stride).max(1);
+                match sample {
+                    Sample::Byte => {
+                        for pixel in bytes.chunks_exact(stride).take(width) {
+                            survey.add(channels.colour_and_alpha(|index| pixel.get(index).copied()));
+                        }
+                    }
+                    Sample::BigEndian16 | Sample::LittleEndian16 => {
+                        for pixel in bytes.as_chunks().0.chunks_exact(stride).take(width) {
+                            let value =
+                                |index: usize| pixel.get(index).copied().map(|pair| sample.value(pair));
+                            survey.add(channels.colour_and_alpha(value));
+                        }
+                    }
+                }
+            }
+        }
+    }
+
     pub(super) fn depth(&self) -> Depth {
         if matches!(self, Self::Bits { .. }) { Depth::Bits1 } else { Depth::Grey8 }
     }
@@ -111,7 +175,7 @@ impl Pixels {
     pub(super) fn bits_per_pixel(&self) -> usize {
         match self {
             Self::Bits { .. } => 1,
-            Self::Table { bits, .. } => usize::from(*bits),
+            Self::Table { bits, .. } | Self::ClearTable { bits, .. } => usize::from(*bits),
             Self::Samples { sample: Sample::Byte, stride, .. } => 8 * stride,
             Self::Samples { stride, .. } => 16 * stride,
         }
@@ -122,8 +186,9 @@ impl Pixels {
         (width as usize * self.bits_per_pixel()).div_ceil(8)
     }
 
-    /// The row that the bytes mean; what a line lacks or has too much stays as it was.
-    pub(super) fn read(&self, bytes: &[u8], width: u32, line: &mut RowBuffer) {
+    /// The row that the bytes mean, laid on a ground; what a line lacks or has too much stays as it was.
+    pub(super) fn read(&self, bytes: &[u8], width: u32, ground: Ground, line: &mut RowBuffer) {
+        let paper = ground.level();
         match (self, line) {
             (Self::Bits { zero_is_black, one_is_black }, RowBuffer::Bits(words)) => {
                 let all = |is: &bool| if *is { u64::MAX } else { 0 };
@@ -154,70 +219,118 @@ impl Pixels {
                 }
             }
             (Self::Samples { channels, sample, stride }, RowBuffer::Grey(levels)) => match sample {
-                Sample::Byte => grey::<1>(bytes, *stride, *channels, |[byte]| byte, levels),
+                Sample::Byte => grey::<1>(bytes, *stride, *channels, paper, |[byte]| byte, levels),
                 Sample::BigEndian16 => {
-                    grey(bytes, *stride, *channels, |pair| to_8_bits(u16::from_be_bytes(pair)), levels);
+                    grey(
+                        bytes,
+                        *stride,
+                        *channels,
+                        paper,
+                        |pair| to_8_bits(u16::from_be_bytes(pair)),
+                        levels,
+                    );
                 }
                 Sample::LittleEndian16 => {
-                    grey(bytes, *stride, *channels, |pair| to_8_bits(u16::from_le_bytes(pair)), levels);
+                    grey(
+                        bytes,
+                        *stride,
+                        *channels,
+                        paper,
+                        |pair| to_8_bits(u16::from_le_bytes(pair)),
+                        levels,
+                    );
                 }
             },
-            _ => debug_assert!(false, "a line of another depth"),
+            _ => debug_assert!(false, "a line of another depth, or a table that lies on no ground yet"),
         }
     }
 
-    /// Adds the `width` pixels that the bytes mean in colour, three channels each; fewer when bytes are
-    /// missing.
-    pub(super) fn colours(&self, bytes: &[u8], width: u32, to: &mut Vec<u8>) {
-        let width = width as usize;
+    /// Adds the `width` pixels that the bytes mean in colour, laid on a ground; fewer when bytes are missing.
+    pub(super) fn colours(&self, bytes: &[u8], width: u32, ground: Ground, to: &mut Vec<[u8; 3]>) {
+        let (width, paper) = (width as usize, ground.level());
         match self {
             Self::Bits { zero_is_black, one_is_black } => {
                 let level = |is_black: &bool| if *is_black { 0 } else { u8::MAX };
                 let levels = [level(zero_is_black), level(one_is_black)];
-                to.extend(numbers(bytes, 1).take(width).flat_map(|bit| [levels[usize::from(bit & 1)]; 3]));
+                to.extend(numbers(bytes, 1).take(width).map(|bit| [levels[usize::from(bit & 1)]; 3]));
             }
             Self::Table { bits, colours, .. } => {
                 let colour = |number: u8| colours.get(usize::from(number)).copied().unwrap_or_default();
-                to.extend(numbers(bytes, (*bits).clamp(1, 8).into()).take(width).flat_map(colour));
+                to.extend(numbers(bytes, (*bits).clamp(1, 8).into()).take(width).map(colour));
             }
+            Self::ClearTable { .. } => debug_assert!(false, "a table that lies on no ground yet"),
             Self::Samples { channels, sample, stride } => match sample {
                 Sample::Byte => {
                     let pixels = bytes.chunks_exact((*stride).max(1)).take(width);
-                    to.extend(pixels.flat_map(|pixel| channels.colour(|index| pixel.get(index).copied())));
+                    to.extend(pixels.map(|pixel| channels.colour(paper, |index| pixel.get(index).copied())));
                 }
                 Sample::BigEndian16 | Sample::LittleEndian16 => {
-                    let value = |pair: [u8; 2]| match sample {
-                        Sample::LittleEndian16 => to_8_bits(u16::from_le_bytes(pair)),
-                        _ => to_8_bits(u16::from_be_bytes(pair)),
-                    };
                     let pixels = bytes.as_chunks().0.chunks_exact((*stride).max(1)).take(width);
-                    to.extend(
-                        pixels
-                            .flat_map(|pixel| channels.colour(|index| pixel.get(index).copied().map(value))),
-                    );
+                    to.extend(pixels.map(|pixel| {
+                        channels
+                            .colour(paper, |index| pixel.get(index).copied().map(|pair| sample.value(pair)))
+                    }));
                 }
             },
         }
     }
 }
 
+impl Sample {
+    /// A sample of 16 bits as 8.
+    fn value(self, pair: [u8; 2]) -> u8 {
+        to_8_bits(match self {
+            Self::LittleEndian16 => u16::from_le_bytes(pair),
+            Self::BigEndian16 | Self::Byte => u16::from_be_bytes(pair),
+        })
+    }
+}
+
 impl Channels {
-    /// The colour on white paper of a pixel whose samples are given by their index.
-    fn colour(self, sample: impl Fn(usize) -> Option<u8>) -> [u8; 3] {
+    /// The colour, on paper of that level, of a pixel whose samples are given by their index.
+    fn colour(self, paper: u8, sample: impl Fn(usize) -> Option<u8>) -> [u8; 3] {
         let value = |index: usize| sample(index).unwrap_or(0);
         let grey = [value(0); 3];
         let rgb = || [value(0), value(1), value(2)];
-        let on_white = |[red, green, blue]: [u8; 3], alpha| colour_on_white([red, green, blue, alpha]).0;
-        let covering = |colour: [u8; 3], cover: u8| colour.map(|c| c.saturating_add(u8::MAX - cover));
+        let on_paper = |[red, green, blue]: [u8; 3], alpha| colour_on(paper, [red, green, blue, alpha]);
+        let covering = |colour: [u8; 3], cover: u8| colour.map(|level| uncovered(level, cover, paper));
         match self {
             Self::Grey => grey,
-            Self::GreyAlpha => on_white(grey, value(1)),
+            Self::GreyAlpha => on_paper(grey, value(1)),
             Self::Rgb => rgb(),
-            Self::RgbAlpha => on_white(rgb(), value(3)),
+            Self::RgbAlpha => on_paper(rgb(), value(3)),
             Self::GreyCover => covering(grey, value(1)),
             Self::RgbCover => covering(rgb(), value(3)),
         }
     }
+
+    /// Colour and alpha of a pixel whose samples are given by their index.
+    fn colour_and_alpha(self, sample: impl Fn(usize) -> Option<u8>) -> [u8; 4] {
+        let value = |index: usize| sample(index).unwrap_or(0);
+        // What was lessened by the cover before it was.
+        let whole = |level: u8, cover: u8| {
+            let whole = u32::from(level) * 255 / u32::from(cover.max(1));
+            u8::try_from(whole).unwrap_or(u8::MAX)
+        };
+        let ([red, green, blue], alpha) = match self {
+            Self::Grey => ([value(0); 3], u8::MAX),
+            Self::GreyAlpha => ([value(0); 3], value(1)),
+            Self::Rgb => ([value(0), value(1), value(2)], u8::MAX),
+            Self::RgbAlpha => ([value(0), value(1), value(2)], value(3)),
+            Self::GreyCover => ([whole(value(0), value(1)); 3], value(1)),
+            Self::RgbCover => {
+                let cover = value(3);
+                ([whole(value(0), cover), whole(value(1), cover), whole(value(2), cover)], cover)
+            }
+        };
+        [red, green, blue, alpha]
+    }
+}
+
+/// A level that was lessened by a cover, with what the cover leaves of paper of that level.
+fn uncovered(level: u8, cover: u8, paper: u8) -> u8 {
+    // All of white or none: black paper adds nothing.
+    level.saturating_add((u8::MAX - cover).min(paper))
 }
 
 /// The numbers of `bits` bits, 1, 2, 4 or 8, the leftmost in the highest bits of its byte.
@@ -265,6 +378,7 @@ fn grey<const N: usize>(
     bytes: &[u8],
     stride: usize,
     channels: Channels,
+    paper: u8,
     value: impl Fn([u8; N]) -> u8,
     levels: &mut [u8],
 ) {
@@ -279,28 +393,28 @@ fn grey<const N: usize>(
         Channels::GreyAlpha => pixels.for_each(|(level, pixel)| {
             if let [grey, alpha, ..] = pixel {
                 let grey = value(*grey);
-                *level = gray_on_white([grey, grey, grey, value(*alpha)]);
+                *level = gray_on(paper, [grey, grey, grey, value(*alpha)]);
             }
         }),
         Channels::Rgb => pixels.for_each(|(level, pixel)| {
             if let [red, green, blue, ..] = pixel {
-                *level = gray_on_white([value(*red), value(*green), value(*blue), 255]);
+                *level = gray_on(paper, [value(*red), value(*green), value(*blue), 255]);
             }
         }),
         Channels::RgbAlpha => pixels.for_each(|(level, pixel)| {
             if let [red, green, blue, alpha, ..] = pixel {
-                *level = gray_on_white([value(*red), value(*green), value(*blue), value(*alpha)]);
+                *level = gray_on(paper, [value(*red), value(*green), value(*blue), value(*alpha)]);
             }
         }),
         Channels::GreyCover => pixels.for_each(|(level, pixel)| {
             if let [grey, cover, ..] = pixel {
-                *level = value(*grey).saturating_add(255 - value(*cover));
+                *level = uncovered(value(*grey), value(*cover), paper);
             }
         }),
         Channels::RgbCover => pixels.for_each(|(level, pixel)| {
             if let [red, green, blue, cover, ..] = pixel {
-                let colour = gray_on_white([value(*red), value(*green), value(*blue), 255]);
-                *level = colour.saturating_add(255 - value(*cover));
+                let colour = gray_on(paper, [value(*red), value(*green), value(*blue), 255]);
+                *level = uncovered(colour, value(*cover), paper);
             }
         }),
     }
@@ -309,10 +423,11 @@ fn grey<const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::gray_on_white;
 
     fn levels(pixels: &Pixels, bytes: &[u8], width: u32) -> Vec<u8> {
         let mut line = RowBuffer::new(width, Depth::Grey8);
-        pixels.read(bytes, width, &mut line);
+        pixels.read(bytes, width, Ground::White, &mut line);
         let RowBuffer::Grey(levels) = line else { panic!("grey") };
         levels
     }
@@ -353,9 +468,9 @@ mod tests {
     }
 
     fn colours(pixels: &Pixels, bytes: &[u8], width: u32) -> Vec<[u8; 3]> {
-        let mut channels = Vec::new();
-        pixels.colours(bytes, width, &mut channels);
-        channels.as_chunks().0.to_vec()
+        let mut colours = Vec::new();
+        pixels.colours(bytes, width, Ground::White, &mut colours);
+        colours
     }
 
     #[test]
@@ -376,7 +491,8 @@ mod tests {
         let mut palette = [[0, 0, 0, 255]; 256];
         palette[1] = [200, 30, 40, 255];
         palette[2] = [255, 0, 0, 51];
-        let two = Pixels::palette(2, palette);
+        let mut two = Pixels::palette(2, palette);
+        two.lay_on(Ground::White);
         assert_eq!(colours(&two, &[0b00_01_10_00, 0b01_00_00_00], 5)[1..3], [[200, 30, 40], [255, 204, 204]]);
         assert_eq!(colours(&two, &[0b00_01_10_00, 0b01_00_00_00], 5)[4], [200, 30, 40]);
     }

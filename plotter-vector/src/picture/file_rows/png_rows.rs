@@ -1,8 +1,10 @@
 //! [`PngRows`]: a PNG by rows.
 
+use super::metadata::Exif;
 use super::pixels::{Channels, Pixels, Sample};
 use super::{Opened, Refused, one_line};
-use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Reader, Transformations};
+use crate::picture::{FileFormat, FileNotes, Resolution, ResolutionSource};
+use png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Reader, Transformations, Unit};
 use std::io::{BufRead, Seek};
 
 /// Most memory that the decoder may take for what is no picture, and for its rows, bytes.
@@ -25,9 +27,7 @@ impl<B: BufRead + Seek> PngRows<B> {
         let header = decoder.read_header_info().map_err(refused)?;
         let (width, height) = header.size();
         Refused::check(width, height)?;
-        if header.interlaced {
-            return Ok(Opened::NotByRows);
-        }
+        let interlaced = header.interlaced;
         let (colour, depth) = (header.color_type, header.bit_depth);
         // A number a pixel goes through one table; for the rest a transparent colour becomes alpha.
         let numbers =
@@ -38,14 +38,17 @@ impl<B: BufRead + Seek> PngRows<B> {
             Transformations::EXPAND
         });
         let reader = decoder.read_info().map_err(refused)?;
+        let notes = notes(reader.info());
+        if interlaced {
+            return Ok(Opened { notes, rows: None });
+        }
         let pixels = if numbers { table(&reader)? } else { samples(&reader) };
         let length = reader.output_line_size(width).unwrap_or(0);
         if length < pixels.row_bytes(width) {
             return Err(Refused::Damaged("rows of another length than the header says".into()));
         }
-        let depth = pixels.depth();
         let rows = Self { reader, pixels, bytes: vec![0; length] };
-        Ok(Opened::Rows { width, height, depth, rows })
+        Ok(Opened { notes, rows: Some(rows) })
     }
 
     /// Reads the next row: its bytes and what they mean.
@@ -57,10 +60,28 @@ impl<B: BufRead + Seek> PngRows<B> {
         }
     }
 
+    pub(super) fn pixels(&mut self) -> &mut Pixels {
+        &mut self.pixels
+    }
+
     /// Looks at the checksums behind the last row.
     pub(super) fn end(&mut self) -> Result<(), String> {
         self.reader.read_row(&mut self.bytes).map(|_| ()).map_err(|error| one_line(&error))
     }
+}
+
+/// What stands before the pixels: `pHYs`, `eXIf` and `acTL`.
+fn notes(info: &Info<'_>) -> FileNotes {
+    let resolution = info.pixel_dims.and_then(|dims| {
+        let per_unit = [f64::from(dims.xppu), f64::from(dims.yppu)];
+        // Without a unit only the shape of a pixel is told, and that it is square is nothing new.
+        let is_told = dims.unit == Unit::Meter || dims.xppu != dims.yppu;
+        let px_per_mm = per_unit.map(|per_metre| per_metre / 1000.0);
+        is_told.then_some(Resolution { px_per_mm, source: ResolutionSource::PngPhys, by_lens: false })
+    });
+    let is_animated = info.animation_control.is_some_and(|control| control.num_frames > 1);
+    let notes = FileNotes { resolution, is_animated, ..FileNotes::new(FileFormat::Png, info.size()) };
+    info.exif_metadata.as_deref().map(Exif::read).unwrap_or_default().add_to(notes)
 }
 
 /// Grey or palette of up to 8 bits: the level or colour of each number.
@@ -69,13 +90,14 @@ fn table<B: BufRead + Seek>(reader: &Reader<B>) -> Result<Pixels, Refused> {
     let bits = info.bit_depth as u8;
     let clear = info.trns.as_deref().unwrap_or(&[]);
     if info.color_type == ColorType::Grayscale {
-        let mut levels = Pixels::even_levels(bits);
+        let levels = Pixels::even_levels(bits);
         // One number may be wholly transparent.
-        let shown = clear.first().and_then(|number| levels.get_mut(usize::from(*number)));
-        if let Some(level) = shown {
-            *level = 255;
+        let Some(number) = clear.first() else { return Ok(Pixels::table(bits, levels)) };
+        let mut colours = levels.map(|level| [level, level, level, 255]);
+        if let Some([.., alpha]) = colours.get_mut(usize::from(*number)) {
+            *alpha = 0;
         }
-        return Ok(Pixels::table(bits, levels));
+        return Ok(Pixels::palette(bits, colours));
     }
     let palette = info.palette.as_deref().ok_or_else(|| Refused::Damaged("a palette is missing".into()))?;
     let (colours, _) = palette.as_chunks::<3>();

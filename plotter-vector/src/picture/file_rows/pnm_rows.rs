@@ -5,6 +5,7 @@
 use super::file_view::fill;
 use super::pixels::{Channels, Pixels, Sample};
 use super::{Opened, Refused, one_line};
+use crate::picture::{FileFormat, FileNotes};
 use image::codecs::pnm::{PnmDecoder, PnmSubtype, SampleEncoding};
 use std::io::BufRead;
 
@@ -28,6 +29,7 @@ impl<B: BufRead> PnmRows<B> {
             PnmDecoder::new(file).map_err(|error| Refused::Damaged(one_line(&error)))?.into_inner();
         let (width, height) = (header.width(), header.height());
         Refused::check(width, height)?;
+        let notes = FileNotes::new(FileFormat::Pnm, (width, height));
         // The decoder has checked that it is 1 to 65535.
         let maxval = u16::try_from(header.maximal_sample()).unwrap_or(u16::MAX);
         let sample = if maxval <= 255 { Sample::Byte } else { Sample::BigEndian16 };
@@ -42,13 +44,12 @@ impl<B: BufRead> PnmRows<B> {
             PnmSubtype::Pixmap(encoding) => {
                 (encoding, Pixels::Samples { channels: Channels::Rgb, sample, stride: 3 })
             }
-            PnmSubtype::ArbitraryMap => return Ok(Opened::NotByRows),
+            PnmSubtype::ArbitraryMap => return Ok(Opened { notes, rows: None }),
         };
         let text = encoding == SampleEncoding::Ascii;
         let bytes = vec![0; pixels.row_bytes(width)];
-        let depth = pixels.depth();
         let rows = Self { file, text, width, maxval, pixels, bytes };
-        Ok(Opened::Rows { width, height, depth, rows })
+        Ok(Opened { notes, rows: Some(rows) })
     }
 
     /// Reads the next row: its bytes and what they mean.
@@ -74,6 +75,10 @@ impl<B: BufRead> PnmRows<B> {
             }
         }
         Ok((&self.pixels, &self.bytes))
+    }
+
+    pub(super) fn pixels(&mut self) -> &mut Pixels {
+        &mut self.pixels
     }
 
     /// Bits in text: any white space or none between them.

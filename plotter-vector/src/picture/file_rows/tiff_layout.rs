@@ -4,11 +4,14 @@
 
 use super::codec::Compression;
 use super::file_view::FileView;
+use super::metadata::px_per_mm;
 use super::pixels::{Channels, Pixels, Sample};
 use super::{Refused, one_line};
+use crate::picture::{FileFormat, FileNotes, Orientation, Resolution, ResolutionSource};
+use std::collections::BTreeSet;
 use std::io::{BufReader, Read, Seek};
 use tiff::TiffError;
-use tiff::decoder::Decoder;
+use tiff::decoder::{Decoder, ifd::Value};
 use tiff::tags::{ByteOrder, Tag};
 
 /// Most memory of a band of tiles, bytes.
@@ -24,7 +27,6 @@ pub(super) struct BlockSpan {
 /// Blocks side by side and one below the other: strips are as wide as the picture, tiles are not.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
-    pub(super) width: u32,
     pub(super) height: u32,
     pub(super) pixels: Pixels,
     pub(super) compression: Compression,
@@ -79,17 +81,28 @@ fn unsupported(what: &str) -> Refused {
 }
 
 impl Layout {
-    /// Reads the tags of the first picture.
-    pub(super) fn read<R: Read + Seek>(file: &FileView<R>) -> Result<Self, Refused> {
-        let decoder = Decoder::new(BufReader::new(file.at(0))).map_err(|error| refused(&error))?;
+    /// Reads the tags of a page.
+    pub(super) fn read<R: Read + Seek>(file: &FileView<R>, page: u32) -> Result<(Self, FileNotes), Refused> {
+        let mut decoder = Decoder::new(BufReader::new(file.at(0))).map_err(|error| refused(&error))?;
+        let pages = pages(&mut decoder);
+        let count = u32::try_from(pages.len()).unwrap_or(u32::MAX);
+        let wanted = page.checked_sub(1).and_then(|index| pages.get(index as usize));
+        let index = *wanted.ok_or(Refused::NoSuchPage { page, pages: count })?;
+        if index > 0 {
+            decoder.seek_to_image(index).map_err(|error| refused(&error))?;
+        }
         let mut tags = Tags { decoder };
         let width = tags.side(Tag::ImageWidth, 0)?;
         let height = tags.side(Tag::ImageLength, 0)?;
         Refused::check(width, height)?;
-        match tags.number(Tag::Orientation, 1)? {
-            0 | 1 => {}
-            turned => return Err(unsupported(&format!("stored turned or mirrored (orientation {turned})"))),
-        }
+        let notes = FileNotes {
+            resolution: resolution(&mut tags.decoder),
+            page,
+            pages: count,
+            ..FileNotes::new(FileFormat::Tiff, (width, height))
+        };
+        let orientation = u32::try_from(tags.number(Tag::Orientation, 1)?).ok();
+        let notes = notes.turned(orientation.and_then(Orientation::of_number).unwrap_or_default());
         let pixels = pixels(&mut tags)?;
         let compression = compression(tags.number(Tag::Compression, 1)?)?;
         let differences = match tags.number(Tag::Predictor, 1)? {
@@ -115,7 +128,6 @@ impl Layout {
             offsets.into_iter().zip(lengths).map(|(offset, length)| BlockSpan { offset, length }).collect();
         let across = width.div_ceil(block_width) as usize;
         let layout = Self {
-            width,
             height,
             pixels,
             compression,
@@ -131,7 +143,7 @@ impl Layout {
         if layout.places.len() < across * height.div_ceil(block_height) as usize {
             return Err(Refused::Damaged("fewer strips or tiles than its size asks for".into()));
         }
-        Ok(layout)
+        Ok((layout, notes))
     }
 
     fn check_tiles(&self) -> Result<(), Refused> {
@@ -154,6 +166,50 @@ impl Layout {
     pub(super) fn block_row_bytes(&self) -> usize {
         self.pixels.row_bytes(self.block_width)
     }
+}
+
+/// The places among the directories of those that are pages: not those of smaller copies or masks of others
+/// (`NewSubfileType`, section 8). Where all are, it is the first.
+fn pages<R: Read + Seek>(decoder: &mut Decoder<BufReader<FileView<R>>>) -> Vec<usize> {
+    /// More directories than this are not looked at; they might be without end.
+    const MAX_DIRECTORIES: usize = 1 << 12;
+    const COPY_OR_MASK: u64 = 0b101;
+    let mut found = Vec::new();
+    let mut seen = BTreeSet::new();
+    let mut next = decoder.ifd_pointer();
+    while let Some(place) = next.filter(|place| seen.len() < MAX_DIRECTORIES && seen.insert(place.0)) {
+        // A directory that cannot be read ends the chain; the pages before it are good.
+        let Ok(directory) = decoder.read_directory(place) else { break };
+        let kind = decoder.read_directory_tags(&directory).find_tag_unsigned::<u64>(Tag::NewSubfileType);
+        if kind.ok().flatten().unwrap_or(0) & COPY_OR_MASK == 0 {
+            found.push(seen.len() - 1);
+        }
+        next = directory.next();
+    }
+    if found.is_empty() {
+        found.push(0);
+    }
+    found
+}
+
+/// `XResolution`, `YResolution` and `ResolutionUnit`, section 8; what is damaged is left out. A lens is told
+/// by the directory of EXIF.
+fn resolution<R: Read + Seek>(decoder: &mut Decoder<BufReader<FileView<R>>>) -> Option<Resolution> {
+    /// `ExposureTime`, `FNumber` and `FocalLength` of EXIF.
+    const OF_A_LENS: [u16; 3] = [33_434, 33_437, 37_386];
+    let mut per_unit = |tag| match decoder.find_tag(tag).ok().flatten()? {
+        Value::Rational(above, below) => Some(f64::from(above) / f64::from(below)),
+        Value::Float(number) => Some(f64::from(number)),
+        Value::Double(number) => Some(number),
+        other => other.into_u32().ok().map(f64::from),
+    };
+    let both = [per_unit(Tag::XResolution)?, per_unit(Tag::YResolution)?];
+    let unit = decoder.find_tag_unsigned::<u32>(Tag::ResolutionUnit).ok().flatten();
+    let exif = decoder.find_tag(Tag::ExifDirectory).ok().flatten().and_then(|at| at.into_ifd_pointer().ok());
+    let exif = exif.and_then(|at| decoder.read_directory(at).ok());
+    let by_lens = exif.is_some_and(|exif| OF_A_LENS.iter().any(|tag| exif.contains(Tag::Unknown(*tag))));
+    let px_per_mm = px_per_mm(both, unit.unwrap_or(2))?;
+    Some(Resolution { px_per_mm, source: ResolutionSource::Tiff, by_lens })
 }
 
 /// `Compression`, sections 8 to 11 and 13; Deflate from the technical note of 1995.

@@ -41,13 +41,12 @@ pub(super) struct TiffRows<R> {
 
 impl<R: Read + Seek> TiffRows<R> {
     /// Reads the tags.
-    pub(super) fn open(file: &FileView<R>) -> Result<Opened<Self>, Refused> {
-        let layout = Layout::read(file)?;
-        let (width, height, depth) = (layout.width, layout.height, layout.pixels.depth());
+    pub(super) fn open(file: &FileView<R>, page: u32) -> Result<Opened<Self>, Refused> {
+        let (layout, notes) = Layout::read(file, page)?;
         let rows = if layout.tiled { layout.block_height as usize } else { 1 };
         let band = vec![0; layout.block_row_bytes() * layout.across * rows];
         let rows = Self { file: file.clone(), layout, strip: None, band, next: 0 };
-        Ok(Opened::Rows { width, height, depth, rows })
+        Ok(Opened { notes, rows: Some(rows) })
     }
 
     /// Reads the next row: its bytes and what they mean.
@@ -71,6 +70,10 @@ impl<R: Read + Seek> TiffRows<R> {
         let bytes = self.band.get(start..start + row_bytes).unwrap_or(&[]);
         self.next += 1;
         Ok((&self.layout.pixels, bytes))
+    }
+
+    pub(super) fn pixels(&mut self) -> &mut Pixels {
+        &mut self.layout.pixels
     }
 
     /// Opens a block.
@@ -108,7 +111,7 @@ fn undo_differences(layout: &Layout, row: &mut [u8]) {
     }
     let (sample, stride) = match layout.pixels {
         Pixels::Samples { sample, stride, .. } => (sample, stride),
-        Pixels::Bits { .. } | Pixels::Table { .. } => (Sample::Byte, 1),
+        Pixels::Bits { .. } | Pixels::Table { .. } | Pixels::ClearTable { .. } => (Sample::Byte, 1),
     };
     match sample {
         Sample::Byte => add_up(row.as_chunks_mut::<1>().0, stride, |[sum], [step]| [sum.wrapping_add(step)]),

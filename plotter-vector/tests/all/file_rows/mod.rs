@@ -3,6 +3,7 @@
 
 mod damaged;
 mod formats;
+mod metadata;
 mod mutated;
 mod pictures;
 
@@ -49,9 +50,14 @@ fn by_rows(bytes: &[u8]) -> Result<Levels, DecodeError> {
     error.map_or(Ok(levels), Err)
 }
 
-/// The picture decoded by the crate `image` alone.
+/// The picture decoded by the crate `image` alone, turned upright as that reads how it is stored.
 fn by_image(bytes: &[u8]) -> image::ImageResult<Levels> {
-    let picture = image::load_from_memory(bytes)?;
+    use image::ImageDecoder as _;
+    let reader = image::ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
+    let mut decoder = reader.into_decoder()?;
+    let orientation = decoder.orientation().unwrap_or(image::metadata::Orientation::NoTransforms);
+    let mut picture = image::DynamicImage::from_decoder(decoder)?;
+    picture.apply_orientation(orientation);
     let levels = match &picture {
         image::DynamicImage::ImageLuma8(gray) => gray.as_raw().clone(),
         // Its iterator panics where there are rows without columns.

@@ -221,17 +221,39 @@ impl Tiff {
         self.with(259, vec![4])
     }
 
-    /// The bytes of the file: header, blocks, directory, longer values.
+    /// The bytes of the file: header, then the page.
     pub(crate) fn file(&self) -> Vec<u8> {
+        Self::pages(std::slice::from_ref(self))
+    }
+
+    /// The bytes of a file of several pages, all in the byte order of the first.
+    pub(crate) fn pages(pages: &[Self]) -> Vec<u8> {
+        const HEADER: usize = 8;
+        let big_endian = pages.first().is_some_and(|page| page.big_endian);
+        let long = |number: u32| if big_endian { number.to_be_bytes() } else { number.to_le_bytes() };
+        let mut file = if big_endian { b"MM\0*".to_vec() } else { b"II*\0".to_vec() };
+        let length = |of: usize| u32::try_from(of).expect("short");
+        let blocks = |page: &Self| page.blocks.iter().map(Vec::len).sum::<usize>();
+        file.extend(long(length(HEADER + pages.first().map_or(0, blocks))));
+        for (index, page) in pages.iter().enumerate() {
+            let start = file.len();
+            let end = start + page.part(start, 0).len();
+            let next = pages.get(index + 1).map_or(0, |next| length(end + blocks(next)));
+            file.extend(page.part(start, next));
+        }
+        file
+    }
+
+    /// A page that begins at `start`: blocks, directory, longer values; `next` is where the next directory
+    /// lies.
+    fn part(&self, start: usize, next: u32) -> Vec<u8> {
         let long = |number: u32| if self.big_endian { number.to_be_bytes() } else { number.to_le_bytes() };
         let short = |number: u16| if self.big_endian { number.to_be_bytes() } else { number.to_le_bytes() };
         let length = |of: usize| u32::try_from(of).expect("short");
-        let mut file = if self.big_endian { b"MM\0*".to_vec() } else { b"II*\0".to_vec() };
-        let directory = 8 + self.blocks.iter().map(Vec::len).sum::<usize>();
-        file.extend(long(length(directory)));
+        let mut file = Vec::new();
         let (mut offsets, mut counts) = (Vec::new(), Vec::new());
         for block in &self.blocks {
-            offsets.push(length(file.len()));
+            offsets.push(length(start + file.len()));
             counts.push(length(block.len()));
             file.extend(block);
         }
@@ -241,9 +263,10 @@ impl Tiff {
         tags.sort();
         file.extend(short(u16::try_from(tags.len()).expect("few")));
         let mut values = Vec::new();
-        let place = file.len() + 12 * tags.len() + 4;
+        let place = start + file.len() + 12 * tags.len() + 4;
         for (tag, numbers) in &tags {
-            let wide = matches!(tag, 256 | 257 | 273 | 278 | 279 | 322..=325);
+            let ratio = matches!(tag, 282 | 283);
+            let wide = ratio || matches!(tag, 256 | 257 | 273 | 278 | 279 | 322..=325);
             let number = |number: &u32| {
                 if wide {
                     long(*number).to_vec()
@@ -253,8 +276,12 @@ impl Tiff {
             };
             let mut bytes: Vec<u8> = numbers.iter().flat_map(number).collect();
             file.extend(short(*tag));
-            file.extend(short(if wide { 4 } else { 3 }));
-            file.extend(long(length(numbers.len())));
+            file.extend(short(match (ratio, wide) {
+                (true, _) => 5,
+                (_, true) => 4,
+                _ => 3,
+            }));
+            file.extend(long(length(numbers.len() / if ratio { 2 } else { 1 })));
             if bytes.len() <= 4 {
                 bytes.resize(4, 0);
                 file.extend(bytes);
@@ -263,10 +290,110 @@ impl Tiff {
                 values.extend(bytes);
             }
         }
-        file.extend([0; 4]);
+        file.extend(long(next));
         file.extend(values);
         file
     }
+}
+
+/// What EXIF may say of a picture.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Exif {
+    /// 1 to 8; what is 0 is not written.
+    pub(crate) orientation: u16,
+    /// Numerator and denominator of both resolutions, and their unit: 2 an inch, 3 a centimetre.
+    pub(crate) resolution: Option<([(u32, u32); 2], u16)>,
+    /// Whether it says which aperture the lens had.
+    pub(crate) lens: bool,
+}
+
+impl Exif {
+    /// Its bytes, big endian.
+    pub(crate) fn bytes(self) -> Vec<u8> {
+        const HEADER: usize = 8;
+        let mut entries: Vec<(u16, u16, [u8; 4])> = Vec::new();
+        let short = |number: u16| [number.to_be_bytes(), [0; 2]].concat().try_into().expect("four bytes");
+        if self.orientation > 0 {
+            entries.push((0x0112, 3, short(self.orientation)));
+        }
+        let count = entries.len() + if self.resolution.is_some() { 3 } else { 0 } + usize::from(self.lens);
+        let behind = HEADER + 2 + 12 * count + 4;
+        let place = |at: usize| u32::try_from(at).expect("short").to_be_bytes();
+        let mut values = Vec::new();
+        let mut ratio = |(above, below): (u32, u32)| {
+            values.extend(above.to_be_bytes());
+            values.extend(below.to_be_bytes());
+            place(behind + values.len() - 8)
+        };
+        if let Some(([across, down], unit)) = self.resolution {
+            entries.push((0x011a, 5, ratio(across)));
+            entries.push((0x011b, 5, ratio(down)));
+            entries.push((0x0128, 3, short(unit)));
+        }
+        let aperture = self.lens.then(|| ratio((28, 10)));
+        if aperture.is_some() {
+            entries.push((0x8769, 4, place(behind + values.len())));
+        }
+        let directory = |entries: &[(u16, u16, [u8; 4])]| {
+            let mut bytes = u16::try_from(entries.len()).expect("few").to_be_bytes().to_vec();
+            for (tag, kind, value) in entries {
+                bytes.extend(tag.to_be_bytes());
+                bytes.extend(kind.to_be_bytes());
+                bytes.extend([0, 0, 0, 1]);
+                bytes.extend(value);
+            }
+            bytes.extend([0; 4]);
+            bytes
+        };
+        let mut bytes = [b"MM\0*".to_vec(), place(HEADER).to_vec(), directory(&entries), values].concat();
+        if let Some(aperture) = aperture {
+            bytes.extend(directory(&[(0x829d, 5, aperture)]));
+        }
+        bytes
+    }
+}
+
+/// A JPEG with segments put behind its first mark in place of its JFIF header: the second bytes of their marks
+/// and what they hold.
+pub(crate) fn jpeg_with(jpeg: &[u8], segments: &[(u8, Vec<u8>)]) -> Vec<u8> {
+    let header = if jpeg.get(3) == Some(&0xe0) { 4 + usize::from(jpeg[5]) } else { 2 };
+    let mut file = jpeg[..2].to_vec();
+    for (mark, bytes) in segments {
+        file.extend([0xff, *mark]);
+        file.extend(u16::try_from(bytes.len() + 2).expect("short").to_be_bytes());
+        file.extend(bytes);
+    }
+    file.extend(&jpeg[header..]);
+    file
+}
+
+/// A JFIF header of a density and its unit: 0 a ratio, 1 an inch, 2 a centimetre.
+pub(crate) fn jfif(unit: u8, [across, down]: [u16; 2]) -> (u8, Vec<u8>) {
+    let density = [across.to_be_bytes(), down.to_be_bytes()].concat();
+    (0xe0, [b"JFIF\0\x01\x02".to_vec(), vec![unit], density, vec![0, 0]].concat())
+}
+
+/// The segment of a JPEG with EXIF.
+pub(crate) fn exif_segment(exif: Exif) -> (u8, Vec<u8>) {
+    (0xe1, [b"Exif\0\0".to_vec(), exif.bytes()].concat())
+}
+
+/// A WebP with EXIF, from a plain one of RGBA: the plain file's one chunk behind the header that says what
+/// else there is.
+pub(crate) fn webp_with(webp: &[u8], (width, height): (u32, u32), exif: Exif) -> Vec<u8> {
+    const ALPHA_AND_EXIF: u8 = 0x18;
+    let chunk = |name: &[u8; 4], body: &[u8]| {
+        let mut bytes = name.to_vec();
+        bytes.extend(u32::try_from(body.len()).expect("short").to_le_bytes());
+        bytes.extend(body);
+        bytes.resize(bytes.len().next_multiple_of(2), 0);
+        bytes
+    };
+    let mut header = vec![ALPHA_AND_EXIF, 0, 0, 0];
+    header.extend(&(width - 1).to_le_bytes()[..3]);
+    header.extend(&(height - 1).to_le_bytes()[..3]);
+    let body = [chunk(b"VP8X", &header), webp[12..].to_vec(), chunk(b"EXIF", &exif.bytes())].concat();
+    chunk(b"RIFF", &[b"WEBP".to_vec(), body].concat())
 }
 
 /// Runs of equal bytes as repeats, others one by one.
@@ -378,11 +505,62 @@ pub(crate) fn pngs(width: u32, height: u32) -> Vec<(String, Vec<u8>)> {
     files
 }
 
+/// WebP, BMP and GIF, as `image` writes them.
+pub(crate) fn others(width: u32, height: u32) -> Vec<(String, Vec<u8>)> {
+    use image::{DynamicImage, ImageFormat};
+    let rgba = image::RgbaImage::from_raw(width, height, noise(4 * (width * height) as usize, 9));
+    let clear = DynamicImage::from(rgba.expect("four channels a pixel"));
+    let solid = DynamicImage::from(clear.to_rgb8());
+    let grey = DynamicImage::from(clear.to_luma8());
+    let file = |picture: &DynamicImage, format| {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        picture.write_to(&mut bytes, format).expect("a vector takes all");
+        bytes.into_inner()
+    };
+    vec![
+        ("webp".into(), file(&solid, ImageFormat::WebP)),
+        ("webp, clear".into(), file(&clear, ImageFormat::WebP)),
+        ("bmp".into(), file(&solid, ImageFormat::Bmp)),
+        ("bmp, clear".into(), file(&clear, ImageFormat::Bmp)),
+        ("bmp, grey".into(), file(&grey, ImageFormat::Bmp)),
+        ("gif".into(), file(&solid, ImageFormat::Gif)),
+    ]
+}
+
+/// Pictures with much beside the pixels, right and wrong.
+pub(crate) fn with_metadata(width: u32, height: u32) -> Vec<(String, Vec<u8>)> {
+    let full = Exif { orientation: 6, resolution: Some(([(300, 1), (300, 1)], 2)), lens: true };
+    let wrong = Exif { orientation: 77, resolution: Some(([(1, 0), (0, 0)], 9)), lens: false };
+    let mut files = Vec::new();
+    for (name, exif) in [("full", full), ("wrong", wrong)] {
+        let png = Png { width, height, bits: 8, colour: 6 };
+        let rows = noise(png.row_bytes(width) * height as usize, 2);
+        let phys = [300_u32.to_be_bytes(), 300_u32.to_be_bytes()].concat();
+        let phys = [phys, vec![1]].concat();
+        files.push((format!("png, {name}"), png.file(&[(b"pHYs", &phys), (b"eXIf", &exif.bytes())], &rows)));
+        let segments = [jfif(1, [300, 300]), exif_segment(exif)];
+        files.push((format!("jpeg, {name}"), jpeg_with(&jpeg(width, height), &segments)));
+        let webp = others(width, height).swap_remove(1).1;
+        files.push((format!("webp, {name}"), webp_with(&webp, (width, height), exif)));
+    }
+    let rows = noise(width.div_ceil(8) as usize * height as usize, 6);
+    let page = Tiff::strips((width, height), 1, 1, 0, &rows)
+        .with(274, vec![5])
+        .with(282, vec![300, 1])
+        .with(283, vec![300, 1])
+        .with(296, vec![2]);
+    let copy = page.clone().with(254, vec![1]);
+    files.push(("tiff, pages".into(), Tiff::pages(&[page.clone(), copy, page])));
+    files
+}
+
 /// A picture of every kind.
 pub(crate) fn every_kind(width: u32, height: u32) -> Vec<(String, Vec<u8>)> {
     let mut files = pngs(width, height);
     files.extend(pnm(width, height));
     files.extend(tiffs(width, height));
     files.push(("jpeg".into(), jpeg(width, height)));
+    files.extend(others(width, height));
+    files.extend(with_metadata(width, height));
     files
 }
