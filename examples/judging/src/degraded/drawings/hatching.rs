@@ -71,8 +71,20 @@ fn fill(outline: &[At], centre: At, pitch: f64, angle: f64, picture: &mut Pictur
         {
             let place =
                 |along: f64| (centre.0 + along * cos - across * sin, centre.1 + along * sin + across * cos);
-            picture.line(&[place(*from), place(*to)]);
+            // Beside a parallel edge it would be one line with that.
+            let middle = place(f64::midpoint(*from, *to));
+            if outline.windows(2).all(|edge| far(middle, (edge[0], edge[1])) > 0.4 * pitch) {
+                picture.line(&[place(*from), place(*to)]);
+            }
         }
         across += pitch;
     }
+}
+
+/// Distance from a straight piece.
+fn far(at: At, (from, to): (At, At)) -> f64 {
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let along = (at.0 - from.0) * dx + (at.1 - from.1) * dy;
+    let share = (along / (dx * dx + dy * dy)).clamp(0.0, 1.0);
+    libm::hypot(at.0 - from.0 - share * dx, at.1 - from.1 - share * dy)
 }
