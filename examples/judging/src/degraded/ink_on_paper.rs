@@ -13,15 +13,18 @@ const SCANNER_NOISE: f64 = 2.5;
 const TOOTH_PX: f64 = 0.8;
 const BOARD_GRAIN_PX: f64 = 1.0;
 const FIBRE_PX: f64 = 1.4;
+/// From half to nothing and to all, in standard deviations of a ground's height: powder lies on slopes too.
+const SLOPE: f64 = 0.45;
 
 fn size(cover: &Plane) -> (usize, usize) {
     (cover.width, cover.height)
 }
 
-/// How much of what a stroke carries stays on a rough ground: nothing in the deepest `gaps` of it, all on its ridges.
+/// How much of what a stroke carries stays on a rough ground: less than half in the deepest `gaps` of it, nothing far
+/// below, all above.
 fn kept(grain: &Plane, gaps: f64) -> Plane {
     let lowest = quantile(gaps);
-    grain.map(|height| step(lowest - 0.35, lowest + 0.9, height))
+    grain.map(|height| step(lowest - SLOPE, lowest + SLOPE, height))
 }
 
 /// A rim that comes and goes by about `uneven_px`: the soft edge is cut at a level that changes from place to place.
