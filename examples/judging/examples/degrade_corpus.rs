@@ -1,8 +1,8 @@
 //! Drawings as people have them, of which every line is known: photographed, in pencil, enlarged, faint.
 //!
-//! For each drawing, kind and strength it writes `KIND_STRENGTH_NN.png` (`.jpg` where compression is part of it), a
-//! `.json` with the strokes for `judge`, and `.ink.png`, the undegraded ink in the same pixels. Look at the same
-//! drawing in several kinds side by side; another seed makes other drawings and other noise:
+//! For each drawing, kind and strength it writes `KIND_STRENGTH_NN.png` (`.jpg` where compression is part of
+//! it), a `.json` with the strokes for `judge`, and `.ink.png`, the undegraded ink in the same pixels. Look
+//! at the same drawing in several kinds side by side; another seed makes other drawings and other noise:
 //!
 //! ```text
 //! cargo run --release --example degrade_corpus -- target/degraded --seed 1

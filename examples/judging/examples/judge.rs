@@ -3,8 +3,8 @@
 //! `draw_corpus` writes pictures with the strokes that they were drawn from. Trace one of them, with ours or
 //! any other program, and this says how far the result and those strokes are from each other: on the average,
 //! at the worst place, at the junctions, how much is missing and how much is there that should not be. Look
-//! at the junctions first: there programs differ most. Of a picture of `degrade_corpus` that shows its sheet askew, the
-//! result is first put back onto the sheet.
+//! at the junctions first: there programs differ most. Of a picture of `degrade_corpus` that shows its sheet
+//! askew, the result is first put back onto the sheet.
 //!
 //! Without a file it draws the corpus, traces it with ours as it is set from the start, and prints a line for
 //! each picture:

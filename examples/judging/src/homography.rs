@@ -10,10 +10,12 @@ const SINGULAR: f64 = 1e-12;
 pub struct Homography(pub [[f64; 3]; 3]);
 
 impl Homography {
-    /// The map of the rectangle from (0, 0) to (width, height) onto a quadrilateral, whose corners are given in the
-    /// order upper left, upper right, lower right, lower left. `None` where three of them lie in a line.
+    /// The map of the rectangle from (0, 0) to (width, height) onto a quadrilateral, whose corners are given
+    /// in the order upper left, upper right, lower right, lower left. `None` where three of them lie in a
+    /// line.
     ///
-    /// Source: Heckbert, "Fundamentals of texture mapping and image warping", UC Berkeley 1989, section 2.2.3.
+    /// Source: Heckbert, "Fundamentals of texture mapping and image warping", UC Berkeley 1989, section
+    /// 2.2.3.
     #[must_use]
     pub fn of_quadrilateral((width, height): (f64, f64), corners: [(f64, f64); 4]) -> Option<Self> {
         let [a, b, c, d] = corners;

@@ -198,7 +198,8 @@ mod tests {
 
     #[test]
     fn what_is_seen_askew_lies_where_it_was_drawn() {
-        // By hand: w = 1 + x / 100, so that (20, 10) is seen at (20 / 1.2, 10 / 1.2) and (60, 30) at (37.5, 18.75).
+        // By hand: w = 1 + x / 100, so that (20, 10) is seen at (20 / 1.2, 10 / 1.2) and (60, 30) at (37.5,
+        // 18.75).
         let homography = Homography([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.01, 0.0, 1.0]]);
         let view = View { width: 50, height: 30, homography };
         let mut seen = Drawing::new(50, 30);

@@ -32,8 +32,8 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
-    /// A whole number below `count`, which is not 0. (Of 2^64 numbers the last few are not shared out evenly; counts
-    /// here are small.)
+    /// A whole number below `count`, which is not 0. (Of 2^64 numbers the last few are not shared out evenly;
+    /// counts here are small.)
     pub(crate) fn below(&mut self, count: u32) -> u32 {
         u32::try_from(self.bits() % u64::from(count.max(1))).unwrap_or(0)
     }

@@ -34,7 +34,8 @@ pub struct Truth {
     pub polylines: Vec<TrueLine>,
     /// Column, row and number of arms of each place where strokes cross or meet.
     pub junctions: Vec<(f64, f64, u32)>,
-    /// Where the drawing is seen in its picture, when that is not pixel on pixel; the places above are the drawing's.
+    /// Where the drawing is seen in its picture, when that is not pixel on pixel; the places above are the
+    /// drawing's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub view: Option<View>,
 }

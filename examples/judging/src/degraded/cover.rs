@@ -1,17 +1,18 @@
 //! How much of each pixel the strokes of a drawing cover.
 //!
-//! The rim of a stroke goes from ink to paper over one pixel across it, as on a sensor whose pixels are as wide as
-//! far apart. `corpus::raster` asks 64 points a pixel instead, which differs at ends and corners only and takes far
-//! longer on sheets of this size.
+//! The rim of a stroke goes from ink to paper over one pixel across it, as on a sensor whose pixels are as
+//! wide as far apart. `corpus::raster` asks 64 points a pixel instead, which differs at ends and corners only
+//! and takes far longer on sheets of this size.
 
 use super::plane::Plane;
 use crate::corpus::strokes::{At, Stroke};
 
-/// Longest piece that is painted at a time, px: the box about a long oblique one would hold half of the sheet.
+/// Longest piece that is painted at a time, px: the box about a long oblique one would hold half of the
+/// sheet.
 const PIECE_PX: f64 = 24.0;
 
-/// Shares from 0 to 1. `place` and `pen` say where a point of the drawing lies in these pixels, and how wide a pen
-/// is there, px.
+/// Shares from 0 to 1. `place` and `pen` say where a point of the drawing lies in these pixels, and how wide
+/// a pen is there, px.
 pub(crate) fn cover(
     strokes: &[Stroke],
     (width, height): (usize, usize),

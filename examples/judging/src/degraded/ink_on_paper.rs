@@ -20,14 +20,15 @@ fn size(cover: &Plane) -> (usize, usize) {
     (cover.width, cover.height)
 }
 
-/// How much of what a stroke carries stays on a rough ground: less than half in the deepest `gaps` of it, nothing far
-/// below, all above.
+/// How much of what a stroke carries stays on a rough ground: less than half in the deepest `gaps` of it,
+/// nothing far below, all above.
 fn kept(grain: &Plane, gaps: f64) -> Plane {
     let lowest = quantile(gaps);
     grain.map(|height| step(lowest - SLOPE, lowest + SLOPE, height))
 }
 
-/// A rim that comes and goes by about `uneven_px`: the soft edge is cut at a level that changes from place to place.
+/// A rim that comes and goes by about `uneven_px`: the soft edge is cut at a level that changes from place to
+/// place.
 fn crept(cover: &Plane, soft_px: f64, uneven_px: f64, random: &mut Random) -> Plane {
     let (width, height) = size(cover);
     let soft = cover.blurred(soft_px.max(0.6));

@@ -46,7 +46,8 @@ pub struct Degraded {
 }
 
 impl Drawn {
-    /// The drawing degraded in one way; `number` names it, and `seed` with that decides what is left to chance.
+    /// The drawing degraded in one way; `number` names it, and `seed` with that decides what is left to
+    /// chance.
     ///
     /// # Errors
     ///

@@ -147,16 +147,26 @@ pub(crate) fn perspective(
     let on_sheet = |x: f64, y: f64| {
         back.apply((x, y)).filter(|(x, y)| (0.0..wide).contains(x) && (0.0..high).contains(y))
     };
-    // Nine rays a pixel, so that edges are as smooth as through a lens.
-    let rays = [-1.0 / 3.0, 0.0, 1.0 / 3.0];
-    let seen = |value: &dyn Fn(f64, f64) -> f64| {
-        Plane::from_fn(width, height, |x, y| {
-            rays.iter().flat_map(|down| rays.map(|across| value(x + across, y + down))).sum::<f64>() / 9.0
-        })
-    };
-    let sheet = seen(&|x, y| if on_sheet(x, y).is_some() { 1.0 } else { 0.0 });
-    // The drawing's pixel centres are at whole numbers; so are the picture's.
-    let ink = seen(&|x, y| on_sheet(x, y).map_or(0.0, |(x, y)| cover.at(x, y)));
+    // Four rays a pixel, so that edges are as smooth as through a lens: how many meet the sheet, how many its
+    // ink.
+    let rays = [-0.25, 0.25].map(|down| [-0.25, 0.25].map(|across| (across, down)));
+    let mut ink = Plane::even(width, height, 0.0);
+    let mut inks = ink.values.iter_mut();
+    let sheet = Plane::from_fn(width, height, |x, y| {
+        let mut met = 0.0;
+        let mut covered = 0.0;
+        for (across, down) in rays.as_flattened() {
+            // The drawing's pixel centres are at whole numbers; so are the picture's.
+            if let Some((x, y)) = on_sheet(x + across, y + down) {
+                met += 0.25;
+                covered += 0.25 * cover.at(x, y);
+            }
+        }
+        if let Some(ink) = inks.next() {
+            *ink = covered;
+        }
+        met
+    });
     let table = wood((width, height), p::TABLE_LEVEL.at(strength), random);
     // A sheet throws a narrow shadow beside it.
     let shadow = sheet.blurred(9.0).map(|share| 1.0 - 0.35 * share);

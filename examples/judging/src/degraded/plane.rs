@@ -3,6 +3,10 @@
 /// Of a bell curve, so many standard deviations to either side are kept: 99.7 %.
 const KERNEL_SD: f64 = 3.0;
 
+/// A bell curve wider than this, px, is made of three running means, whose time does not grow with it. Their
+/// windows are whole pixels, so that the standard deviation is up to half a pixel off.
+const MEANS_FROM_PX: f64 = 4.0;
+
 /// Numbers in rows.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Plane {
@@ -78,11 +82,33 @@ impl Plane {
     }
 
     fn rows_blurred(&self, sd_px: f64) -> Self {
-        let kernel = bell(sd_px);
-        let reach = kernel.len() / 2;
-        if reach == 0 {
-            return self.clone();
+        if sd_px > MEANS_FROM_PX {
+            let reach = reach_of_means(sd_px);
+            return self.rows_averaged(reach).rows_averaged(reach).rows_averaged(reach);
         }
+        let kernel = bell(sd_px);
+        let weighted =
+            |near: &[f64]| near.iter().zip(&kernel).map(|(value, weight)| value * weight).sum::<f64>();
+        self.rows_with(kernel.len() / 2, |padded, row| row.extend(padded.windows(kernel.len()).map(weighted)))
+    }
+
+    /// Each value the mean of those in its row that are at most `reach` away.
+    fn rows_averaged(&self, reach: usize) -> Self {
+        let count = (2 * reach + 1) as f64;
+        self.rows_with(reach, |padded, row| {
+            let (first, rest) = padded.split_at(2 * reach);
+            let mut sum: f64 = first.iter().sum();
+            for (last, first) in rest.iter().zip(padded) {
+                sum += last;
+                row.push(sum / count);
+                sum -= first;
+            }
+        })
+    }
+
+    /// A new plane, made row by row of rows that are continued at both ends by `reach` times their last
+    /// value.
+    fn rows_with(&self, reach: usize, change: impl Fn(&[f64], &mut Vec<f64>)) -> Self {
         let mut values = Vec::with_capacity(self.values.len());
         let mut padded = Vec::with_capacity(self.width + 2 * reach);
         for row in self.values.chunks(self.width.max(1)) {
@@ -91,9 +117,7 @@ impl Plane {
             padded.extend(core::iter::repeat_n(first, reach));
             padded.extend_from_slice(row);
             padded.extend(core::iter::repeat_n(last, reach));
-            let weighted =
-                |near: &[f64]| near.iter().zip(&kernel).map(|(value, weight)| value * weight).sum::<f64>();
-            values.extend(padded.windows(kernel.len()).map(weighted));
+            change(&padded, &mut values);
         }
         Self { values, ..*self }
     }
@@ -114,6 +138,15 @@ fn split(value: f64, size: usize) -> (usize, f64) {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole and within the plane")]
     let place = whole as usize;
     (place, clamped - whole)
+}
+
+/// How far means over 2 r + 1 values reach, so that three in turn have the standard deviation: the variance
+/// of each is ((2 r + 1)² - 1) / 12.
+fn reach_of_means(sd_px: f64) -> usize {
+    let reach = libm::round((libm::sqrt(4.0 * sd_px * sd_px + 1.0) - 1.0) / 2.0);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole, not negative, small")]
+    let reach = reach as usize;
+    reach
 }
 
 /// A bell curve's weights at whole distances; their sum is 1.
@@ -147,6 +180,16 @@ mod tests {
         // The tails beyond three standard deviations are cut off.
         assert!((variance(|x, _| x - 20.0) - 4.0).abs() < 0.15);
         assert!((variance(|_, y| y - 15.0) - 1.0).abs() < 0.05);
+    }
+
+    #[test]
+    fn a_wide_blur_has_its_standard_deviation_too() {
+        let dot = Plane::from_fn(401, 1, |x, _| if x == 200.0 { 1.0 } else { 0.0 });
+        let soft = dot.blurred_apart(30.0, 0.0);
+        let places = soft.values.iter().zip(-200..=200);
+        let variance: f64 = places.map(|(weight, place)| weight * f64::from(place * place)).sum();
+        assert!((soft.values.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        assert!((libm::sqrt(variance) - 30.0).abs() < 0.6, "{variance}");
     }
 
     #[test]

@@ -5,8 +5,8 @@ use super::texture::grain;
 use crate::corpus::random::Random;
 use image::{DynamicImage, GrayImage, Luma, Rgb, RgbImage};
 
-/// Of a camera's noise, this share of the standard deviation is the same in all colours, and this is each colour's
-/// own; the squares' sum is 1.
+/// Of a camera's noise, this share of the standard deviation is the same in all colours, and this is each
+/// colour's own; the squares' sum is 1.
 const NOISE_SHARES: (f64, f64) = (0.8, 0.6);
 
 /// Three planes of the same size.

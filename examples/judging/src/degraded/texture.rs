@@ -30,8 +30,8 @@ pub(crate) fn streaks(
         .normalized()
 }
 
-/// Slow changes over `size_px`, roughly of mean 0 and variance 1: a coarse grid of random values with a smooth
-/// passage between them.
+/// Slow changes over `size_px`, roughly of mean 0 and variance 1: a coarse grid of random values with a
+/// smooth passage between them.
 pub(crate) fn clouds(width: usize, height: usize, size_px: f64, random: &mut Random) -> Plane {
     let cells = |size: usize| {
         let mut count = 2;

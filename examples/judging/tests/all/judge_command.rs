@@ -46,8 +46,8 @@ fn svg_and_hpgl_of_the_same_line_have_the_same_figures() {
 
 #[test]
 fn a_drawing_seen_askew_is_judged_where_it_was_drawn() {
-    // By hand: w = 1 + x / 30 halves the end at x = 30 and leaves 3/4 of x = 10, so that the line from (10, 10) to
-    // (30, 10) is seen from (7.5, 7.5) to (15, 5) in a picture of 20 x 10 px.
+    // By hand: w = 1 + x / 30 halves the end at x = 30 and leaves 3/4 of x = 10, so that the line from (10,
+    // 10) to (30, 10) is seen from (7.5, 7.5) to (15, 5) in a picture of 20 x 10 px.
     let view =
         r#","view":{"width":20,"height":10,"homography":[[1,0,0],[0,1,0],[0.03333333333333333,0,1]]}}"#;
     let folder = Folder::new();

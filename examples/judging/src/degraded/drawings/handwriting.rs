@@ -6,8 +6,8 @@ use crate::corpus::Picture;
 use crate::corpus::random::Random;
 use crate::corpus::strokes::At;
 
-/// A letter from the line it stands on to that again, in heights of a small letter, y up, and how far it goes. No
-/// way is gone twice: hands that lift little make loops of them.
+/// A letter from the line it stands on to that again, in heights of a small letter, y up, and how far it
+/// goes. No way is gone twice: hands that lift little make loops of them.
 const LETTERS: [(&[At], f64); 8] = [
     // e
     (&[(0.34, 0.32), (0.62, 0.74), (0.42, 1.0), (0.16, 0.62), (0.26, 0.12), (0.58, 0.02)], 0.86),

@@ -1,4 +1,5 @@
-//! Drawings as people make them, other ones for each seed. Each is 1000 x 1400 px, by one or two pens of 2 to 7 px.
+//! Drawings as people make them, other ones for each seed. Each is 1000 x 1400 px, by one or two pens of 2 to
+//! 7 px.
 
 mod cartoon;
 mod circuit;
