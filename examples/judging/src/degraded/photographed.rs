@@ -19,6 +19,9 @@ const NOISE_SIZE_PX: f64 = 0.6;
 const SQUARE_PX: f64 = 39.4;
 const RULE_PX: f64 = 2.0;
 
+/// Least table beside a sheet, as a share of the sheet's width.
+const EDGE: f64 = 0.015;
+
 /// Light from one side, less towards the corners as through a lens: from 1 down to `least`.
 fn light((width, height): (usize, usize), least: f64, random: &mut Random) -> Plane {
     let angle = random.between(0.0, TAU);
@@ -133,7 +136,9 @@ pub(crate) fn perspective(
     let mut corner = |x: f64, y: f64, inwards: f64| {
         let slip = (random.between(-0.4, 0.4) * tilt, random.between(-0.4, 0.4) * tilt);
         let (cx, cy) = turned((x + inwards - wide / 2.0, y - high / 2.0), turn, (wide / 2.0, high / 2.0));
-        (cx + margin + slip.0, cy + margin + slip.1)
+        // All of the sheet is in the picture.
+        let inside = |at: f64, size: f64| at.clamp(EDGE * wide, size + 2.0 * margin - EDGE * wide);
+        (inside(cx + margin + slip.0, wide), inside(cy + margin + slip.1, high))
     };
     let corners = [
         corner(0.0, 0.0, far),
