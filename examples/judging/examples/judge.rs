@@ -3,7 +3,8 @@
 //! `draw_corpus` writes pictures with the strokes that they were drawn from. Trace one of them, with ours or
 //! any other program, and this says how far the result and those strokes are from each other: on the average,
 //! at the worst place, at the junctions, how much is missing and how much is there that should not be. Look
-//! at the junctions first: there programs differ most.
+//! at the junctions first: there programs differ most. Of a picture of `degrade_corpus` that shows its sheet
+//! askew, the result is first put back onto the sheet.
 //!
 //! Without a file it draws the corpus, traces it with ours as it is set from the start, and prints a line for
 //! each picture:
@@ -28,7 +29,8 @@ use std::process::ExitCode;
 #[derive(Debug, Parser)]
 #[command(after_help = "Examples:\n  judge traced.svg --truth target/corpus/junctions_w5.json\n  \
                   judge traced.svg --truth flag_1px.json --picture flag_1px.png --report figures.json\n\n\
-                  What each figure is: the page of `Judgement`. Lengths are px of the picture.")]
+                  What each figure is: the page of `Judgement`. Lengths are px of the picture; of one that shows \
+                  the drawing askew, px of the drawing.")]
 struct Arguments {
     /// SVG whose sheet is the picture, y down, pixel centres at .5; or HPGL, y up from the centre of the
     /// lower left pixel [default: what ours makes of each picture of the corpus]
@@ -74,14 +76,21 @@ fn judge(arguments: &Arguments) -> Result<(), String> {
 fn judged(file: &Path, truth_file: &Path, arguments: &Arguments) -> Result<(String, Judgement), String> {
     let truth = Truth::from_json(&read_file(truth_file)?).map_err(|error| at(truth_file, &error))?;
     let bytes = read_file(file)?;
-    let size = (truth.width, truth.height);
+    let size = truth.view.map_or((truth.width, truth.height), |view| (view.width, view.height));
     let is_svg = bytes.iter().find(|byte| !byte.is_ascii_whitespace() && **byte < 0x80) == Some(&b'<');
     let read = if is_svg {
         JudgedDrawing::from_svg(&bytes, size)
     } else {
         JudgedDrawing::from_hpgl(&bytes, size, arguments.mm_per_px)
     };
-    let JudgedDrawing { drawing, pens } = read.map_err(|error| at(file, &error))?;
+    let mut read = read.map_err(|error| at(file, &error))?;
+    if let Some(view) = &truth.view {
+        if let Some(picture) = &arguments.picture {
+            return Err(at(picture, &"is seen askew: the distance of its ink would be in other pixels"));
+        }
+        read = read.flattened(view, (truth.width, truth.height)).map_err(|error| at(file, &error))?;
+    }
+    let JudgedDrawing { drawing, pens } = read;
     let ink = arguments.picture.as_deref().map(|picture| ink(picture, &truth)).transpose()?;
     let figures = Judgement::new(&drawing, &pens, &truth, ink.as_ref()).map_err(|error| at(file, &error))?;
     Ok((truth.name, figures))

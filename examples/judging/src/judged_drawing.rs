@@ -1,5 +1,6 @@
 //! [`JudgedDrawing`]: a vector result on the picture that it was made from.
 
+use crate::corpus::View;
 use plotter_examples::shared::usual_colour;
 use plotter_motion::{PlotOp, Point, hpgl, toolpath::chords};
 use plotter_vector::{
@@ -10,6 +11,9 @@ use plotter_vector::{
 
 /// Farthest that curves may be from their chords, px.
 const CHORD_PX: f64 = 0.1;
+
+/// From a place that is counted from a pixel's centre to [`PxPoint`], px.
+pub(crate) const CENTRE_PX: f64 = 0.5;
 
 /// What an SVG can be read to, mm.
 const TOLERANCES_MM: core::ops::RangeInclusive<f64> = 0.001..=10.0;
@@ -105,6 +109,29 @@ impl JudgedDrawing {
         Ok(Self { drawing, pens })
     }
 
+    /// A result on a picture in which the drawing is seen from askew, in pixels of the drawing itself.
+    ///
+    /// # Errors
+    ///
+    /// A stroke lies beyond the horizon, where no drawing is.
+    pub fn flattened(&self, view: &View, (width_px, height_px): (u32, u32)) -> Result<Self, String> {
+        let back = view.homography.inverse().ok_or("the view has no inverse")?;
+        let mut drawing = Drawing::new(width_px, height_px);
+        for (index, stroke) in self.drawing.strokes().enumerate() {
+            // The view counts from pixel centres.
+            let flat = |at: &PxPoint| {
+                let (x, y) = back.apply((at.x - CENTRE_PX, at.y - CENTRE_PX))?;
+                Some(PxPoint::new(x + CENTRE_PX, y + CENTRE_PX))
+            };
+            let places: Option<Vec<PxPoint>> = stroke.iter().map(flat).collect();
+            let places = places.ok_or_else(|| {
+                format!("stroke {index} lies beyond the horizon of the sheet that the picture shows")
+            })?;
+            drawing.push_with_pen(self.drawing.pen(index), places);
+        }
+        Ok(Self { drawing, pens: self.pens.clone() })
+    }
+
     /// What ours makes of a picture with its default settings; in colour, with the pens that it finds.
     ///
     /// # Errors
@@ -129,6 +156,7 @@ impl JudgedDrawing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Homography;
     use plotter_vector::{Scale, hpgl, svg};
 
     /// Three decimals of SVG, in single precision.
@@ -166,6 +194,26 @@ mod tests {
         let file = "<svg xmlns='http://www.w3.org/2000/svg' width='60pt' height='40pt' viewBox='0 0 600 400'>\
             <path d='M32.5 45L505 300H32.5M205 102.5H400' stroke='black' fill='none'/></svg>";
         assert_same(&JudgedDrawing::from_svg(file.as_bytes(), (60, 40)).unwrap().drawing, SVG_PX);
+    }
+
+    #[test]
+    fn what_is_seen_askew_lies_where_it_was_drawn() {
+        // By hand: w = 1 + x / 100, so that (20, 10) is seen at (20 / 1.2, 10 / 1.2) and (60, 30) at (37.5,
+        // 18.75).
+        let homography = Homography([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.01, 0.0, 1.0]]);
+        let view = View { width: 50, height: 30, homography };
+        let mut seen = Drawing::new(50, 30);
+        seen.push_with_pen(3, [PxPoint::new(20.0 / 1.2 + 0.5, 10.0 / 1.2 + 0.5), PxPoint::new(38.0, 19.25)]);
+        let flat = JudgedDrawing { drawing: seen, pens: Vec::new() }.flattened(&view, (100, 80)).unwrap();
+        assert_eq!((flat.drawing.width_px(), flat.drawing.height_px(), flat.drawing.pen(0)), (100, 80, 3));
+        for (found, wanted) in flat.drawing.stroke(0).iter().zip([(20.5, 10.5), (60.5, 30.5)]) {
+            assert!(found.distance(PxPoint::new(wanted.0, wanted.1)) < 1e-9, "{found:?}");
+        }
+        // Its horizon is seen at the column 100: all that lies left of it is on the sheet.
+        let mut beyond = Drawing::new(50, 30);
+        beyond.push([PxPoint::new(10.0, 10.0), PxPoint::new(101.0, 10.0)]);
+        let found = JudgedDrawing { drawing: beyond, pens: Vec::new() }.flattened(&view, (100, 80));
+        assert!(found.unwrap_err().contains("stroke 0"));
     }
 
     #[test]

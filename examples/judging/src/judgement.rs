@@ -1,6 +1,7 @@
 //! [`Judgement`]: how well a drawing meets the strokes that a picture was drawn from.
 
 use crate::corpus::Truth;
+use crate::judged_drawing::CENTRE_PX;
 use crate::{LinePiece, NearLines};
 use plotter_vector::{Bitmap, Drawing, PxPoint, Rgb, ink::PalettePen};
 use serde::Serialize;
@@ -11,14 +12,15 @@ const PIECE_PX: f64 = 0.5;
 /// What is no farther than this from the other side counts as found, px.
 const FOUND_PX: f64 = 1.0;
 
+/// The same on pictures that are not sharp, px: a pen of 3 px, the usual one, from its
+/// middle to its rim.
+const FOUND_ROUGHLY_PX: f64 = 1.5;
+
 /// What is nearer than this to a stroke is meant to be that stroke, px: within the lines of the corpus.
 const MEANT_PX: f64 = 3.0;
 
 /// Longest lines that are compared, px: ten times those of a dense A0 sheet at 600 dots per inch.
 const MOST_PX: f64 = 1e8;
-
-/// From the truth file, which counts from pixel centres, to [`PxPoint`], px.
-const CENTRE_PX: f64 = 0.5;
 
 /// Figures of a drawing beside the truth.
 ///
@@ -45,6 +47,12 @@ pub struct Judgement {
     pub recall: f64,
     /// Share of the drawing's length that is true: Σ<sub>D</sub> *l* [*d*(*p*, *T*) ≤ 1] / Σ<sub>D</sub> *l*.
     pub precision: f64,
+    /// Recall with 1.5 px in place of 1.
+    pub recall_1_5_px: f64,
+    /// Precision with 1.5 px in place of 1.
+    pub precision_1_5_px: f64,
+    /// Strokes, as a share of the true ones.
+    pub strokes_of_true: f64,
     /// At the junctions of the truth, where there are any.
     pub junctions: Option<JunctionFigures>,
     /// Share of the drawing's length that lies less than 3 px from the truth and whose pen has, of all
@@ -67,6 +75,8 @@ pub struct JunctionFigures {
     pub mean_px: f64,
     /// Share of them at which it is at most 1 px.
     pub within_1_px: f64,
+    /// Share of them at which it is at most 1.5 px.
+    pub within_1_5_px: f64,
 }
 
 impl Judgement {
@@ -104,6 +114,9 @@ impl Judgement {
             hausdorff_px: greatest_px(&of_truth).max(greatest_px(&of_drawing)),
             recall: share(&of_truth, |piece| piece.far_px <= FOUND_PX),
             precision: share(&of_drawing, |piece| piece.far_px <= FOUND_PX),
+            recall_1_5_px: share(&of_truth, |piece| piece.far_px <= FOUND_ROUGHLY_PX),
+            precision_1_5_px: share(&of_drawing, |piece| piece.far_px <= FOUND_ROUGHLY_PX),
+            strokes_of_true: drawing.strokes().len() as f64 / truth.polylines.len() as f64,
             junctions: junctions(truth, &of_truth, &of_drawing),
             right_pen: right_pen(drawing, pens, truth, &of_drawing)?,
             ink_max_px: ink.map(|ink| {
@@ -115,8 +128,9 @@ impl Judgement {
 
     /// The columns of [`Judgement::row`], as the head of a table.
     pub const HEAD: &str = "\
-        | picture | vertices | strokes | pen up | mean | greatest | recall | precision | junctions | right pen | ink |\n\
-        |---|---|---|---|---|---|---|---|---|---|---|\n";
+        | picture | vertices | strokes | pen up | mean | greatest | recall | precision | junctions | right pen | ink | \
+        strokes of true | recall, precision at 1.5 px | junctions within 1.5 px |\n\
+        |---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
 
     /// The figures as a line of a table.
     #[must_use]
@@ -124,11 +138,13 @@ impl Judgement {
         let junctions = self.junctions.map_or(String::new(), |found| {
             format!("{:.2}, {:.0} %", found.mean_px, 100.0 * found.within_1_px)
         });
+        let roughly =
+            self.junctions.map_or(String::new(), |found| format!("{:.0} %", 100.0 * found.within_1_5_px));
         let or_nothing = |figure: Option<f64>, digits: usize| {
             figure.map_or(String::new(), |figure| format!("{figure:.digits$}"))
         };
         format!(
-            "| {name} | {} | {} | {:.0} | {:.3} | {:.2} | {:.4} | {:.4} | {junctions} | {} | {} |\n",
+            "| {name} | {} | {} | {:.0} | {:.3} | {:.2} | {:.4} | {:.4} | {junctions} | {} | {} | {:.2} | {:.4}, {:.4} | {roughly} |\n",
             self.vertices,
             self.strokes,
             self.pen_up_px,
@@ -138,6 +154,9 @@ impl Judgement {
             self.precision,
             or_nothing(self.right_pen, 4),
             or_nothing(self.ink_max_px, 2),
+            self.strokes_of_true,
+            self.recall_1_5_px,
+            self.precision_1_5_px,
         )
     }
 }
@@ -198,7 +217,8 @@ fn greatest_px(pieces: &[Measured]) -> f64 {
 
 fn junctions(truth: &Truth, of_truth: &[Measured], of_drawing: &[Measured]) -> Option<JunctionFigures> {
     let radius_px = 1.5 * truth.widest_px() + 4.0;
-    let mut figures = JunctionFigures { count: truth.junctions.len(), mean_px: 0.0, within_1_px: 0.0 };
+    let mut figures =
+        JunctionFigures { count: truth.junctions.len(), mean_px: 0.0, within_1_px: 0.0, within_1_5_px: 0.0 };
     let mut count = 0.0;
     for (x, y, _) in &truth.junctions {
         let centre = place(*x, *y);
@@ -209,10 +229,12 @@ fn junctions(truth: &Truth, of_truth: &[Measured], of_drawing: &[Measured]) -> O
         let off_px = in_disc(of_truth).max(in_disc(of_drawing));
         figures.mean_px += off_px;
         figures.within_1_px += if off_px <= FOUND_PX { 1.0 } else { 0.0 };
+        figures.within_1_5_px += if off_px <= FOUND_ROUGHLY_PX { 1.0 } else { 0.0 };
         count += 1.0;
     }
     figures.mean_px /= count;
     figures.within_1_px /= count;
+    figures.within_1_5_px /= count;
     (figures.count > 0).then_some(figures)
 }
 
@@ -285,6 +307,20 @@ mod tests {
     }
 
     #[test]
+    fn what_is_a_little_more_than_a_pixel_off_is_found_roughly() {
+        let truth = truth(&[("#000000", &[(0.0, 5.0), (20.0, 5.0)])], &[]);
+        // The right half is 1.25 px below, the left half is there twice.
+        let left = (1, &[(0.5, 5.5), (10.5, 5.5)][..]);
+        let found = judge(&drawing(&[left, left, (1, &[(10.5, 6.75), (20.5, 6.75)])]), &truth);
+        // Half a piece from the right end of the left half is nearer than 1 px to that.
+        assert!(
+            (found.recall - 0.55).abs() < 0.03 && (found.precision - 2.0 / 3.0).abs() < 0.03,
+            "{found:?}"
+        );
+        assert_eq!((found.recall_1_5_px, found.precision_1_5_px, found.strokes_of_true), (1.0, 1.0, 3.0));
+    }
+
+    #[test]
     fn what_is_missing_lowers_recall_and_what_is_too_much_precision() {
         let truth = truth(&[("#000000", &[(0.0, 5.0), (20.0, 5.0)])], &[]);
         // Half of the line, 10 px, and as much somewhere else.
@@ -303,9 +339,16 @@ mod tests {
             &[(20.0, 20.0, 4)],
         );
         let straight = [(1, &[(0.5, 20.5), (40.5, 20.5)][..]), (1, &[(20.5, 0.5), (20.5, 40.5)][..])];
-        let figures =
-            |off_px: f64, within: f64| JunctionFigures { count: 1, mean_px: off_px, within_1_px: within };
-        assert_eq!(judge(&drawing(&straight), &cross).junctions, Some(figures(0.0, 1.0)));
+        let figures = |mean_px, within_1_px, within_1_5_px| JunctionFigures {
+            count: 1,
+            mean_px,
+            within_1_px,
+            within_1_5_px,
+        };
+        assert_eq!(judge(&drawing(&straight), &cross).junctions, Some(figures(0.0, 1.0, 1.0)));
+        // Both lines 1.25 px beside the true ones.
+        let beside = [(1, &[(0.5, 21.75), (40.5, 21.75)][..]), (1, &[(21.75, 0.5), (21.75, 40.5)][..])];
+        assert_eq!(judge(&drawing(&beside), &cross).junctions, Some(figures(1.25, 0.0, 1.0)));
         // The disc reaches 7 px, and there is nothing of the drawing in it.
         let left_out = [
             (1, &[(0.5, 20.5), (10.5, 20.5)][..]),

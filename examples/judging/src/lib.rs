@@ -5,11 +5,14 @@
 //! pictures.
 
 pub mod corpus;
+pub mod degraded;
+mod homography;
 mod judged_corpus;
 mod judged_drawing;
 mod judgement;
 mod near_lines;
 
+pub use homography::Homography;
 pub use judged_corpus::judged_corpus;
 pub use judged_drawing::JudgedDrawing;
 pub use judgement::{Judgement, JunctionFigures};

@@ -4,14 +4,14 @@ mod junctions;
 mod letters;
 mod marks;
 mod pictures;
-mod random;
+pub(crate) mod random;
 mod raster;
 mod sheet;
-mod strokes;
+pub(crate) mod strokes;
 mod technical;
 mod truth;
 
 pub use pictures::all;
 pub use sheet::{Sheet, Size};
 pub use strokes::Picture;
-pub use truth::{TrueLine, Truth};
+pub use truth::{TrueLine, Truth, View};

@@ -27,6 +27,28 @@ impl Random {
         f64::from(high) / 4_294_967_296.0
     }
 
+    /// Evenly from `low`, included, to `high`, excluded.
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    /// A whole number below `count`, which is not 0. (Of 2^64 numbers the last few are not shared out evenly;
+    /// counts here are small.)
+    pub(crate) fn below(&mut self, count: u32) -> u32 {
+        u32::try_from(self.bits() % u64::from(count.max(1))).unwrap_or(0)
+    }
+
+    /// True with this probability.
+    pub(crate) fn chance(&mut self, share: f64) -> bool {
+        self.unit() < share
+    }
+
+    /// One of several.
+    pub(crate) fn pick<'a, T>(&mut self, several: &'a [T]) -> Option<&'a T> {
+        let count = u32::try_from(several.len()).unwrap_or(u32::MAX);
+        several.get(usize::try_from(self.below(count)).unwrap_or(0))
+    }
+
     /// Normally distributed with mean 0 and variance 1 (Box and Muller 1958).
     pub(crate) fn normal(&mut self) -> f64 {
         let radius = libm::sqrt(-2.0 * libm::log(1.0 - self.unit()));

@@ -2,6 +2,7 @@
 
 use super::junctions;
 use super::strokes::{Picture, Stroke};
+use crate::Homography;
 use plotter_vector::{Rgb, picture::RgbError};
 use serde::{Deserialize, Serialize};
 
@@ -33,6 +34,21 @@ pub struct Truth {
     pub polylines: Vec<TrueLine>,
     /// Column, row and number of arms of each place where strokes cross or meet.
     pub junctions: Vec<(f64, f64, u32)>,
+    /// Where the drawing is seen in its picture, when that is not pixel on pixel; the places above are the
+    /// drawing's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub view: Option<View>,
+}
+
+/// A picture in which a drawing is seen from askew.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct View {
+    /// Width of the picture, px.
+    pub width: u32,
+    /// Height of the picture, px.
+    pub height: u32,
+    /// Column and row in the picture from column and row in the drawing, both counted from pixel centres.
+    pub homography: Homography,
 }
 
 /// A stroke of a known pen.
@@ -76,6 +92,7 @@ impl Truth {
                 .into_iter()
                 .map(|(x, y, arms)| (round(x), round(y), arms))
                 .collect(),
+            view: None,
         }
     }
 
@@ -112,6 +129,14 @@ impl Truth {
         }
         if truth.polylines.is_empty() {
             return Err("polylines: there is no stroke to compare with".into());
+        }
+        if let Some(view) = &truth.view {
+            if view.width == 0 || view.height == 0 {
+                return Err(format!("view: a picture of {} x {} px has no pixels", view.width, view.height));
+            }
+            if view.homography.inverse().is_none() {
+                return Err("view.homography: has no inverse, so that nothing could be seen by it".into());
+            }
         }
         match truth.junctions.iter().position(|(x, y, _)| !is_place((*x, *y))) {
             Some(index) => Err(format!("junctions[{index}]: is on no picture")),

@@ -45,6 +45,30 @@ fn svg_and_hpgl_of_the_same_line_have_the_same_figures() {
 }
 
 #[test]
+fn a_drawing_seen_askew_is_judged_where_it_was_drawn() {
+    // By hand: w = 1 + x / 30 halves the end at x = 30 and leaves 3/4 of x = 10, so that the line from (10,
+    // 10) to (30, 10) is seen from (7.5, 7.5) to (15, 5) in a picture of 20 x 10 px.
+    let view =
+        r#","view":{"width":20,"height":10,"homography":[[1,0,0],[0,1,0],[0.03333333333333333,0,1]]}}"#;
+    let folder = Folder::new();
+    let truth = folder.write("askew.json", TRUTH.trim_end().trim_end_matches('}').to_owned() + view);
+    let svg = folder.write(
+        "askew.svg",
+        "<svg xmlns='http://www.w3.org/2000/svg' width='20' height='10'><path d='M8 8L15.5 5.5' stroke='black'/></svg>",
+    );
+    let found = figures(&[&svg, "--truth", &truth]);
+    assert!(found["hausdorff_px"].as_f64().unwrap() < 0.01, "{found}");
+    assert!((found["pen_down_px"].as_f64().unwrap() - 20.0).abs() < 0.01, "{found}");
+    assert_eq!((&found["recall_1_5_px"], &found["strokes_of_true"]), (&1.0.into(), &1.0.into()));
+    assert!(complaint("judge", &[&svg, "--truth", &truth, "--picture", FLAG]).contains("askew"));
+    let broken = folder.write(
+        "broken.json",
+        TRUTH.trim_end().trim_end_matches('}').to_owned() + &view.replace("[0,1,0]", "[1,0,0]"),
+    );
+    assert!(complaint("judge", &[&svg, "--truth", &broken]).contains("view.homography"));
+}
+
+#[test]
 fn what_is_wrong_is_said_with_its_file() {
     let folder = Folder::new();
     let truth = folder.write("line.json", TRUTH);

@@ -12,6 +12,7 @@
 
 #[path = "../../../tests/all/built_example/mod.rs"]
 mod built_example;
+mod degraded;
 mod judge_command;
 mod judged_corpus;
 mod lost_ink;
