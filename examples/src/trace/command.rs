@@ -1,5 +1,6 @@
 //! The command line of `trace`, and its course.
 
+use super::explain::{check as check_folder, explain};
 use super::figures::{Report, table};
 use super::files::{check_size, prints_file, write_files};
 use super::settings::settings;
@@ -24,7 +25,7 @@ pub(super) const FLAG: &[u8] = include_bytes!("../../data/flag.png");
     version,
     max_term_width = 100,
     after_help = "Examples:\n  plotter trace scan.png --max-error-px 0.4 --svg scan.svg --hpgl scan.plt --report scan.json\n  \
-                  plotter trace photo.jpg --threshold adaptive --mode mixed --hatch 0.5 --overlay look.png\n  \
+                  plotter trace photo.jpg --mode mixed --hatch 0.5 --overlay look.png --explain steps\n  \
                   plotter trace drawing.png --pens 3 --svg pens.svg --hpgl pens.plt\n  \
                   scanimage --format png | plotter trace - --hpgl - > scan.plt\n  \
                   plotter trace a0.tif --no-errors --svg a0.svg\n\n\
@@ -56,9 +57,21 @@ pub struct TraceCommand {
     /// What is given up where one stroke a line leaves ink bare (ours only) [default: both]
     #[arg(long, value_name = "WHAT")]
     pub(super) prefer: Option<PreferChoice>,
-    /// How ink is told from paper: otsu, adaptive (uneven light), or a level from 0 to 255 [default: otsu]
+    /// How ink is told from paper: auto (as the picture asks for: one level, or as photographs, pencil and
+    /// faint lines need it), otsu, adaptive (uneven light), or a level from 0 to 255 [default: auto]
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub(super) threshold: Option<String>,
+    /// What is done with marks much paler than the ink, as the ruling of paper and what shines through it
+    /// (with the threshold auto) [default: drop]
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub(super) ruling: Option<RulingChoice>,
+    /// Joins strokes that go on in each other beyond a gap of so much, mm on the sheet (ours only) [default:
+    /// none; of pencil and chalk three widths of the lines]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub(super) gap: Option<f64>,
+    /// Leaves out strokes that are shorter, mm on the sheet (ours only)
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub(super) min_stroke: Option<f64>,
     /// Pens told apart by colour: how many, auto, or a palette's TOML file (ours only) [default: 1, by grey
     /// level]
     #[arg(long, value_name = "N|auto|F.toml", allow_negative_numbers = true)]
@@ -110,6 +123,13 @@ pub struct TraceCommand {
     /// Writes the distribution of the errors as a bar chart
     #[arg(long, value_name = "F.svg")]
     pub(super) error_plot: Option<PathBuf>,
+    /// Writes the ink that is traced, black on white, in the picture's pixels
+    #[arg(long, value_name = "F.png")]
+    pub(super) ink: Option<PathBuf>,
+    /// Tells what was found of the picture, and writes into a folder the picture of each step: its levels, as
+    /// they are evened where one level does not tell the ink, and the ink
+    #[arg(long, value_name = "FOLDER")]
+    pub(super) explain: Option<PathBuf>,
     /// Leaves out how far the ink lies from the strokes: the file is read twice less
     #[arg(long, conflicts_with = "error_plot")]
     pub(super) no_errors: bool,
@@ -149,6 +169,14 @@ pub(super) enum PreferChoice {
     Ink,
 }
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum RulingChoice {
+    /// They are ink, too
+    Keep,
+    /// They are left out
+    Drop,
+}
+
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum GcodePen {
     /// M3 S90 down, M5 up: GRBL with a servo as its spindle
@@ -183,6 +211,7 @@ impl TraceCommand {
 pub(super) fn trace(arguments: &TraceCommand, stopped: &mut bool) -> Result<(), String> {
     let settings = settings(arguments)?;
     let interrupt = Interrupt::new()?;
+    check_folder(arguments.explain.as_deref())?;
     let prints_file = prints_file(arguments, &settings)?;
     let input = Input::open(arguments.image.as_deref())?;
     let name = match arguments.image.as_deref() {
@@ -216,6 +245,7 @@ pub(super) fn trace(arguments: &TraceCommand, stopped: &mut bool) -> Result<(), 
     let report = Report::new(&settings, &traced);
     check_size(arguments, &settings.size, drawing)?;
     write_files(arguments, &settings.size, &traced, &report, &name)?;
+    explain(arguments, &settings.vectorizer, &input).map_err(|error| here(&error))?;
     let mut worst = None;
     if let (Some(path), Some(picture)) = (&settings.overlay, &traced.picture) {
         worst = traced.errors.as_ref().and_then(|errors| errors.worst);

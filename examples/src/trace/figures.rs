@@ -57,6 +57,7 @@ impl<'a> Report<'a> {
         let ours = settings.vectorizer.algorithm == Algorithm::Ours;
         let mut told = vec![("size", settings.size.told())];
         told.extend(told_notes(&traced.notes));
+        told.extend(traced.ink.iter().cloned());
         Self {
             picture: PictureReport::new(&traced.notes, &settings.size),
             assumed: told.iter().map(|(name, text)| format!("{name}: {text}")).collect(),

@@ -1,6 +1,7 @@
 //! `trace`: a picture as strokes, and these over the picture; whole, or not written.
 
 mod command;
+mod explain;
 mod figures;
 mod files;
 mod interrupt;

@@ -1,6 +1,6 @@
 //! What the options and the machine's file ask for.
 
-use super::command::{Choice, ModeChoice, OrderChoice, PreferChoice, TraceCommand};
+use super::command::{Choice, ModeChoice, OrderChoice, PreferChoice, RulingChoice, TraceCommand};
 use crate::shared::{PictureSize, at, read_file, vectorizer};
 use plotter_motion::{
     Machine,
@@ -41,12 +41,18 @@ pub(super) struct Unscaled {
     pens: Option<Pens>,
     threads: Option<rayon::ThreadPool>,
     pub(super) overlay: Option<PathBuf>,
+    gap_mm: f64,
+    min_stroke_mm: f64,
+    keep_pale: bool,
 }
 
 impl Unscaled {
     /// For a picture of that size.
     pub(super) fn in_size(self, size: PictureSize) -> Result<Settings, String> {
-        let Self { mut vectorizer, config, pens, threads, overlay } = self;
+        let Self { mut vectorizer, config, pens, threads, overlay, gap_mm, min_stroke_mm, keep_pale } = self;
+        vectorizer.threshold.keep_pale = keep_pale;
+        vectorizer.gap_px = gap_mm / size.mm_per_px;
+        vectorizer.min_stroke_px = min_stroke_mm / size.mm_per_px;
         if vectorizer.algorithm == Algorithm::Ours {
             vectorizer.areas = self::vectorizer(&config, size.mm_per_px)?.areas;
         }
@@ -65,6 +71,15 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Unscaled, String> {
         None => VectorizeConfig::default(),
     };
     arguments.size.check()?;
+    for (option, given) in [("--gap", arguments.gap), ("--min-stroke", arguments.min_stroke)] {
+        if let Some(bad) = given.filter(|mm| !(*mm >= 0.0 && mm.is_finite())) {
+            return Err(format!(
+                "{option}: {bad} mm is no distance; give some tenths, as 0.5, or 0 for none"
+            ));
+        }
+    }
+    let (gap_mm, min_stroke_mm) = (arguments.gap.unwrap_or(0.0), arguments.min_stroke.unwrap_or(0.0));
+    let keep_pale = arguments.ruling == Some(RulingChoice::Keep);
     if let Some(text) = &arguments.threshold {
         config.threshold = match text.parse::<ThresholdMethod>().map_err(|error| format!("--{error}"))? {
             ThresholdMethod::Auto => ThresholdChoice::Auto,
@@ -83,7 +98,16 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Unscaled, String> {
         let threshold =
             vectorizer(&VectorizeConfig { threshold: config.threshold, ..Default::default() }, 1.0)?;
         let vectorizer = Vectorizer { algorithm: Algorithm::Published, ..threshold };
-        return Ok(Unscaled { vectorizer, config, pens: None, threads, overlay });
+        return Ok(Unscaled {
+            vectorizer,
+            config,
+            pens: None,
+            threads,
+            overlay,
+            gap_mm,
+            min_stroke_mm,
+            keep_pale,
+        });
     }
     match arguments.max_error_px {
         Some(bad) if !(bad > 0.0 && bad.is_finite()) => {
@@ -157,7 +181,7 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Unscaled, String> {
     // What is in mm waits for the picture's size.
     let unscaled = VectorizeConfig { hatch_mm: 0.0, pen_mm: 0.0, ..config };
     let vectorizer = Vectorizer { prefer, ..vectorizer(&unscaled, 1.0)? };
-    Ok(Unscaled { vectorizer, config, pens, threads, overlay })
+    Ok(Unscaled { vectorizer, config, pens, threads, overlay, gap_mm, min_stroke_mm, keep_pale })
 }
 
 /// Refuses options that the published algorithm does not have.
@@ -169,6 +193,8 @@ fn refuse_ours(arguments: &TraceCommand) -> Result<(), String> {
         ("--prefer", "adds no strokes", arguments.prefer.is_some()),
         ("--mode", "always follows the middle of lines", arguments.mode.is_some()),
         ("--pens", "draws with one pen", arguments.pens.is_some()),
+        ("--gap", "joins no strokes", arguments.gap.is_some()),
+        ("--min-stroke", "leaves out none", arguments.min_stroke.is_some()),
         ("--order", "draws in the order of tracking", arguments.order.is_some()),
         ("--hatch", "has no areas", arguments.hatch.is_some()),
         ("--pen-mm", "has no areas", arguments.pen_mm.is_some()),

@@ -5,8 +5,8 @@ use super::settings::Settings;
 use crate::shared::{WorkShown, is_standard, read_file, read_input};
 use crate::trace::{Interrupt, overlay_step};
 use plotter_vector::{
-    Colour, DecodeError, Drawing, FileRows, Palette, Pixel, Progress,
-    ink::{Despeckled, Pens, pen_width_px},
+    Colour, DecodeError, Drawing, FileRows, Gray, Palette, Pixel, Progress,
+    ink::{Despeckled, Look, Pens, Split, pen_width_px},
     picture::{FileNotes, Row, RowSource as _, decode_page_in_colour},
     trace::SheetErrors,
 };
@@ -65,6 +65,8 @@ pub(super) struct Traced {
     pub(super) time: Duration,
     /// What the file says of itself.
     pub(super) notes: FileNotes,
+    /// How the ink was told from the paper, in words.
+    pub(super) ink: Vec<(&'static str, String)>,
 }
 
 /// The picture's file: one that can be read as often as it takes, or the bytes of what cannot, as a pipe.
@@ -97,6 +99,13 @@ impl Input {
             Self::Bytes(bytes) => FileNotes::read(Cursor::new(bytes), page),
         };
         notes.map_err(|error| error.to_string())
+    }
+
+    /// Its levels, whole.
+    pub(super) fn gray(&self, page: u32) -> Result<Gray, String> {
+        let bytes = self.bytes()?;
+        let scan = FileRows::of_page(Cursor::new(&*bytes), page);
+        scan.and_then(FileRows::into_gray).map_err(|error| error.to_string())
     }
 
     fn bytes(&self) -> Result<Cow<'_, [u8]>, String> {
@@ -137,11 +146,21 @@ pub(super) fn by_rows<R: Read + Seek>(
         removed: sheet.removed,
         palette: Palette::default(),
         pen_px: sheet.pen_px,
+        ink: told_ink(sheet.look, sheet.split),
         widest_px: sheet.pen_px,
         picture,
         time,
         notes: scan.notes().clone(),
     })
+}
+
+/// How ink was told from paper: as was found of an uneven picture, or by one level.
+fn told_ink(look: Option<Look>, split: Option<Split>) -> Vec<(&'static str, String)> {
+    let by_level = |split: Split| {
+        let (side, way) = if split.ink_is_dark { ("dark", "up to") } else { ("light", "above") };
+        vec![("ink", format!("{side}: levels {way} {}", split.level))]
+    };
+    look.map(|look| look.told()).or(split.map(by_level)).unwrap_or_default()
 }
 
 fn go_on(interrupt: Interrupt) -> ControlFlow<()> {
@@ -223,6 +242,7 @@ pub(super) fn in_colour(
         picture,
         time,
         notes,
+        ink: Vec::new(),
         drawing,
     })
 }

@@ -14,8 +14,8 @@ const LEAST_CONTRAST: f64 = 60.0;
 
 /// Places between the mean of the dark and that of the light levels, in parts of the way, where the lines must have as
 /// many rims as at the level itself; and by how many parts they may differ.
-const BETWEEN: [f64; 6] = [0.3, 0.4, 0.5, 0.6, 0.7, 0.8];
-const RIMS_DIFFER: f64 = 0.07;
+const BETWEEN: [f64; 7] = [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8];
+const RIMS_DIFFER: f64 = 0.05;
 
 /// And by so many rims in any case.
 const FEW_RIMS: f64 = 4.0;
@@ -23,6 +23,16 @@ const FEW_RIMS: f64 = 4.0;
 /// How far from its mean the paper's outer quarter begins at most, as a part of the contrast: light that falls off puts
 /// it far.
 const PAPER_SPREADS: f64 = 0.15;
+
+/// A jump between two levels with no change beside it, within a quarter of its own, is a side of an enlarged pixel. A
+/// camera and a scanner make none of less than the whole contrast. Jumps of fewer levels than this do not count.
+const LEAST_JUMP: u8 = 24;
+const CHANGE_BESIDE: u8 = 4;
+
+/// From so many of all jumps on, of which at least so many are no whole contrast, a picture is enlarged.
+const LONELY: f64 = 0.6;
+const PARTIAL: f64 = 0.15;
+const WHOLE_CONTRAST: f64 = 0.75;
 
 /// Counts, for each level, the neighbours in a row between which it lies: the rims of lines at that level.
 ///
@@ -35,13 +45,16 @@ pub(crate) struct Evenness {
     pixels: u64,
     /// How many more rims a level has than the one before.
     more: [i64; 256],
+    jumps: u64,
+    /// Jumps with no change beside them, by their levels.
+    lonely: [u64; 256],
 }
 
 impl Evenness {
     pub(crate) fn new(width: u32, height: u32) -> Self {
         let pixels = u64::from(width) * u64::from(height);
         let every = u32::try_from(pixels / LOOKED_AT).unwrap_or(u32::MAX).saturating_add(1);
-        Self { every, pixels, more: [0; 256] }
+        Self { every, pixels, more: [0; 256], jumps: 0, lonely: [0; 256] }
     }
 
     /// Row `y` of the picture.
@@ -58,6 +71,32 @@ impl Evenness {
             add(*one.min(other), 1);
             add(*one.max(other), -1);
         }
+        for four in levels.windows(4) {
+            let [before, one, other, after] = *four else { continue };
+            let jump = one.abs_diff(other);
+            if jump < LEAST_JUMP {
+                continue;
+            }
+            self.jumps += 1;
+            let beside = before.abs_diff(one).max(other.abs_diff(after));
+            if beside <= jump / CHANGE_BESIDE
+                && let Some(n) = self.lonely.get_mut(usize::from(jump))
+            {
+                *n += 1;
+            }
+        }
+    }
+
+    /// Whether the picture was enlarged, each of its own pixels to a block.
+    #[expect(clippy::cast_precision_loss, reason = "a picture's pixels")]
+    fn is_enlarged(&self, contrast: f64) -> bool {
+        let lonely: u64 = self.lonely.iter().sum();
+        let partial: u64 = (0_u8..)
+            .zip(self.lonely)
+            .filter(|(jump, _)| f64::from(*jump) < WHOLE_CONTRAST * contrast)
+            .map(|(_, n)| n)
+            .sum();
+        lonely as f64 > LONELY * self.jumps as f64 && partial as f64 > PARTIAL * lonely as f64
     }
 
     /// Whether one level serves, for a picture with these levels.
@@ -100,7 +139,7 @@ impl Evenness {
                 .find(|(_, n)| is_outer(*n))
         };
         let quarter = from.map_or(paper, |(at, _)| f64::from(at));
-        are_same && (quarter - paper).abs() <= PAPER_SPREADS * contrast
+        are_same && !self.is_enlarged(contrast) && (quarter - paper).abs() <= PAPER_SPREADS * contrast
     }
 }
 
@@ -129,6 +168,19 @@ mod tests {
             _ => 250,
         }));
         assert!(is_even(|_, _| 77));
+    }
+
+    #[test]
+    fn enlarged_pixels_are_seen() {
+        let own = |x: u32, y: u32| match (x + y) % 12 {
+            5 => 20,
+            4 | 6 => 140,
+            _ => 250,
+        };
+        assert!(is_even(own));
+        for k in [2, 3, 5] {
+            assert!(!is_even(|x, y| own(x / k, y / k)), "{k}");
+        }
     }
 
     #[test]

@@ -6,7 +6,7 @@
 
 use crate::parallel::each;
 use crate::{
-    ink::{Evened, RowThreshold, Survey},
+    ink::{Evened, Look, RowThreshold, Survey},
     picture::{Bitmap, Gray},
 };
 use core::{fmt, str};
@@ -228,6 +228,27 @@ impl Threshold {
 }
 
 impl Threshold {
+    /// A picture whose ink no single level tells from its paper, as if the ink were black and the paper white,
+    /// with what was found; none where [`ThresholdMethod::Auto`] takes a level, and for other methods.
+    ///
+    /// ```
+    /// # use plotter_vector::{Gray, Threshold};
+    /// // The light falls off to the right, and with it a line across: paper there is darker than ink here.
+    /// let level = |x: u32, y: u32| (250 - 2 * x) * if (30..34).contains(&y) { 1 } else { 2 } / 2;
+    /// let photo = Gray::new(100, 64, (0..6400).map(|i| level(i % 100, i / 100) as u8).collect())?;
+    /// let (evened, look) = Threshold::default().look(&photo).unwrap();
+    /// assert!((0..100).all(|x| evened.pixels()[100 * 31 + x] < 127 && evened.pixels()[x] == 255));
+    /// assert_eq!(look.line_px, 4.0);
+    /// # Ok::<(), plotter_vector::picture::GrayError>(())
+    /// ```
+    #[must_use]
+    pub fn look(self, gray: &Gray) -> Option<(Gray, Look)> {
+        self.is_uneven(gray).then(|| {
+            let (Evened { gray, look }, _) = self.evened(gray);
+            (gray, look)
+        })
+    }
+
     /// Whether no single level tells the ink of a picture, and none is asked for.
     pub(crate) fn is_uneven(self, gray: &Gray) -> bool {
         self.method == ThresholdMethod::Auto && {

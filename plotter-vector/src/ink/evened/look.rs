@@ -5,14 +5,13 @@ use core::fmt;
 /// What was found of a picture whose ink one level does not tell from its paper: of a photograph, of faint or rough
 /// lines, of dirty or ruled paper.
 ///
-/// As text, a line for each thing that was assumed:
-///
 /// ```
 /// # use plotter_vector::ink::Look;
-/// let look = Look { ink_levels: 140.0, noise_levels: 2.5, line_px: 5.0, pale_levels: Some(40.0), ..Look::default() };
-/// let lines: Vec<String> = look.lines().collect();
-/// assert_eq!(lines[0], "ink: dark, 140 levels from the paper, whose noise has 2.5");
-/// assert_eq!(lines[2], "left out: marks of 40 levels, much paler than the ink, as ruling and what shines through are");
+/// let look = Look { ink_levels: 140.0, noise_levels: 2.5, line_px: 5.0, ..Look::default() };
+/// assert_eq!(
+///     look.to_string(),
+///     "ink: dark, 140 levels from the paper, whose noise has 2.5\nlines: 5 px wide, whole\n"
+/// );
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -36,38 +35,41 @@ pub struct Look {
 }
 
 impl Look {
-    /// What was assumed, a line each.
-    pub fn lines(&self) -> impl Iterator<Item = String> {
-        let Self { light_ink, ink_levels, noise_levels, line_px, broken, pale_levels, left_out, sheet } =
-            *self;
-        let side = if light_ink { "light" } else { "dark" };
-        let strokes = if broken { "with grain and gaps" } else { "whole" };
-        let of = |[one, two, three, four]: [(f32, f32); 4]| {
-            let corner = |(x, y): (f32, f32)| format!("({x:.0}, {y:.0})");
-            format!(
-                "sheet: from {} over {} and {} to {}; what lies beside it is left out",
-                corner(one),
-                corner(two),
-                corner(three),
-                corner(four)
-            )
-        };
-        [
-            Some(format!("ink: {side}, {ink_levels:.0} levels from the paper, whose noise has {noise_levels:.1}")),
-            (line_px > 0.0).then(|| format!("lines: {line_px:.0} px wide, {strokes}")),
-            pale_levels.map(|levels| {
-                format!("left out: marks of {levels:.0} levels, much paler than the ink, as ruling and what shines through are")
-            }),
-            (left_out > 0).then(|| format!("left out: {left_out} specks")),
-            sheet.map(of),
-        ]
-        .into_iter()
-        .flatten()
+    /// What was assumed, with its subject, in words.
+    #[must_use]
+    pub fn told(&self) -> Vec<(&'static str, String)> {
+        let side = if self.light_ink { "light" } else { "dark" };
+        let mut told = Vec::new();
+        if self.line_px > 0.0 {
+            let (levels, noise, line_px) = (self.ink_levels, self.noise_levels, self.line_px);
+            told.push((
+                "ink",
+                format!("{side}, {levels:.0} levels from the paper, whose noise has {noise:.1}"),
+            ));
+            let strokes = if self.broken { "with grain and gaps" } else { "whole" };
+            told.push(("lines", format!("{line_px:.0} px wide, {strokes}")));
+        }
+        if let Some(levels) = self.pale_levels {
+            let like = "much paler than the ink, as ruling and what shines through are";
+            told.push(("left out", format!("marks of {levels:.0} levels, {like}")));
+        }
+        if self.left_out > 0 {
+            let of = if self.left_out == 1 { "speck" } else { "specks" };
+            told.push(("left out", format!("{} {of}", self.left_out)));
+        }
+        if let Some(corners) = self.sheet {
+            let [one, two, three, four] = corners.map(|(x, y)| format!("({x:.0}, {y:.0})"));
+            told.push((
+                "sheet",
+                format!("between {one}, {two}, {three} and {four}; what lies beside it is left out"),
+            ));
+        }
+        told
     }
 }
 
 impl fmt::Display for Look {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.lines().try_for_each(|line| writeln!(f, "{line}"))
+        self.told().iter().try_for_each(|(subject, text)| writeln!(f, "{subject}: {text}"))
     }
 }
