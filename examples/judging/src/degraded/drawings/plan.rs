@@ -19,8 +19,19 @@ struct Room {
     bottom: f64,
 }
 
+/// Walls that end on another from both sides are at least so far apart, px: nearer, they would be one line
+/// with a step.
+const APART_PX: f64 = 40.0;
+
 /// A door's gap: its ends.
 type Gap = (At, At);
+
+/// What a further wall must keep clear of.
+#[derive(Default)]
+struct Taken {
+    gaps: Vec<Gap>,
+    ends: Vec<At>,
+}
 
 pub(super) fn plan(random: &mut Random) -> Picture {
     let (broad, thin) = (random.between(4.5, 7.0), random.between(2.0, 3.2));
@@ -32,10 +43,10 @@ pub(super) fn plan(random: &mut Random) -> Picture {
         bottom: random.between(1100.0, 1230.0),
     };
     picture.rectangle((house.left, house.top), (house.right, house.bottom));
-    let (mut gaps, mut rooms) = (Vec::new(), Vec::new());
-    split(house, 3, random, &mut picture, &mut gaps, &mut rooms);
+    let (mut taken, mut rooms) = (Taken::default(), Vec::new());
+    split(house, 3, random, &mut picture, &mut taken, &mut rooms);
     picture.pen(thin);
-    for gap in &gaps {
+    for gap in &taken.gaps {
         door(*gap, random, &mut picture);
     }
     let stairs = random.below(u32::try_from(rooms.len()).unwrap_or(1));
@@ -57,15 +68,17 @@ fn split(
     depth: u32,
     random: &mut Random,
     picture: &mut Picture,
-    gaps: &mut Vec<Gap>,
+    taken: &mut Taken,
     rooms: &mut Vec<Room>,
 ) {
     let (wide, high) = (room.right - room.left, room.bottom - room.top);
     let upright = wide > high;
     let length = wide.max(high);
-    let clear = |at: f64, gaps: &[Gap]| {
-        // The wall must not end in a door.
-        gaps.iter().all(|(from, to)| {
+    let (low, top) = if upright { (room.top, room.bottom) } else { (room.left, room.right) };
+    let point = |at: f64, along: f64| if upright { (at, along) } else { (along, at) };
+    let clear = |at: f64, taken: &Taken| {
+        // The wall must not end in a door, nor beside another wall's end.
+        let no_door = taken.gaps.iter().all(|(from, to)| {
             let in_walls = if upright {
                 (from.1 - to.1).abs() < 1.0 && [room.top, room.bottom].contains(&from.1)
             } else {
@@ -73,30 +86,34 @@ fn split(
             };
             let (low, top) = if upright { (from.0, to.0) } else { (from.1, to.1) };
             !in_walls || at < low - JAMB_PX || at > top + JAMB_PX
-        })
+        });
+        no_door
+            && [low, top]
+                .map(|along| point(at, along))
+                .iter()
+                .all(|new| taken.ends.iter().all(|old| libm::hypot(new.0 - old.0, new.1 - old.1) >= APART_PX))
     };
     let start = if upright { room.left } else { room.top };
     let place = (0..20)
         .map(|_| start + length * random.between(0.35, 0.65))
-        .find(|at| at - start >= ROOM_PX && start + length - at >= ROOM_PX && clear(*at, gaps));
+        .find(|at| at - start >= ROOM_PX && start + length - at >= ROOM_PX && clear(*at, taken));
     let Some(at) = place.filter(|_| depth > 0) else {
         rooms.push(room);
         return;
     };
     let width = random.between(72.0, 92.0);
-    let (low, top) = if upright { (room.top, room.bottom) } else { (room.left, room.right) };
     let from = random.between(low + JAMB_PX, top - JAMB_PX - width);
-    let point = |along: f64| if upright { (at, along) } else { (along, at) };
-    picture.line(&[point(low), point(from)]);
-    picture.line(&[point(from + width), point(top)]);
-    gaps.push((point(from), point(from + width)));
+    picture.line(&[point(at, low), point(at, from)]);
+    picture.line(&[point(at, from + width), point(at, top)]);
+    taken.gaps.push((point(at, from), point(at, from + width)));
+    taken.ends.extend([point(at, low), point(at, top)]);
     let (one, other) = if upright {
         (Room { right: at, ..room }, Room { left: at, ..room })
     } else {
         (Room { bottom: at, ..room }, Room { top: at, ..room })
     };
-    split(one, depth - 1, random, picture, gaps, rooms);
-    split(other, depth - 1, random, picture, gaps, rooms);
+    split(one, depth - 1, random, picture, taken, rooms);
+    split(other, depth - 1, random, picture, taken, rooms);
 }
 
 /// The open leaf and its way.
