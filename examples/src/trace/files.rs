@@ -71,13 +71,13 @@ pub(super) fn check_size(
         // What is smaller than that is a dot on any sheet.
         if side_px >= DOT_PX && side_px < step_px {
             return Err(format!(
-                "{asked}: with {mm_per_px} mm a pixel the whole drawing is less than the {step_mm} mm that {option} tells apart; \
+                "{asked}: with {mm_per_px} mm the whole drawing is less than the {step_mm} mm that {option} tells apart; \
                  0.1 gives 254 dots per inch"
             ));
         }
         if side_px >= DOT_PX && step_px > COARSE_PX {
             eprintln!(
-                "trace: warning: {asked}: with {mm_per_px} mm a pixel the {step_mm} mm that {option} tells apart are {step_px:.0} px, \
+                "trace: warning: {asked}: with {mm_per_px} mm the {step_mm} mm that {option} tells apart are {step_px:.0} px, \
                  and small shapes fall together; 0.1 gives 254 dots per inch"
             );
         }

@@ -103,7 +103,7 @@ fn the_file_is_overruled_and_what_it_says_wrongly_is_not_used() {
         (Some(DPI_300), &["--mm-per-px", "0.2"], 0.2, "as asked by --mm-per-px"),
         (None, &[], 0.1, "for the file says no size; give --width-mm, --height-mm, --dpi or --mm-per-px"),
         (Some([2_835; 2]), &[], 0.1, "its 72 dots per inch are those of a screen"),
-        (Some([3_780; 2]), &[], 0.1, "its 96.01 dots per inch are those of a screen"),
+        (Some([3_780; 2]), &[], 0.1, "its 96 dots per inch are those of a screen"),
         (Some([40; 2]), &[], 0.1, "its 1.02 dots per inch lie outside"),
         (Some([8_000, 3_937]), &[], 0.1, "its pixels are not square (203.2 x 100 dots per inch)"),
     ] {
@@ -162,7 +162,7 @@ fn a_machine_draws_in_true_size_as_far_as_it_reaches() {
     // 100 dots per inch: 117 px are 29.72 mm.
     assert_eq!(drawn(Some([3_937; 2]), &[]).0, [1189.0, 681.0]);
     let usual = drawn(None, &[]);
-    assert_eq!(usual.0, [1671.0, 957.0]);
+    assert_eq!(usual.0, [1672.0, 957.0]);
     assert!(usual.1.contains("50 mm in width, for the file says no size"), "{}", usual.1);
     assert_eq!(drawn(Some([3_937; 2]), &["--width-mm", "50"]).0, usual.0);
     let far = drawn(None, &["--width-mm", "5000"]);
@@ -229,7 +229,9 @@ fn others_pictures_come_as_their_files_say() {
     let plt = folder.file("a.plt");
     let Some(picture) = other("cases", "pictures/dpi300.png") else { return };
     folder.trace_report(picture.to_str().unwrap(), &["--hpgl", &plt]);
-    assert_eq!(extent(&plt), [4000.0, 2000.0]);
+    // 1181 px are 99.99 mm, and each end is rounded to a unit.
+    let [width, height] = extent(&plt);
+    assert!((width - 4000.0).abs() <= 1.0 && (height - 2000.0).abs() <= 1.0, "{width} x {height}");
     let of = |name: &str| {
         let picture = other("cases", &format!("pictures/{name}")).unwrap();
         folder.trace_report(picture.to_str().unwrap(), &[])
