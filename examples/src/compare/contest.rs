@@ -177,7 +177,7 @@ fn traced(args: &CompareCommand, path: &Path, bytes: &[u8], bed: &TestBed) -> Re
     let scale = fit_drawing((scan.width(), scan.height()), bed.machine(), args.width_mm)?;
     let vectorizer =
         vectorizer(&bed.machine().config().vectorize, scale.mm_per_px()).map_err(|error| at(path, &error))?;
-    let traced = vectorized(&vectorizer, bytes.to_vec()).map_err(|error| at(path, &error))?;
+    let (traced, _) = vectorized(&vectorizer, bytes.to_vec(), 1).map_err(|error| at(path, &error))?;
     let errors = traced.errors.unwrap_or_default();
     lost_ink(&vectorizer, &errors, traced.pen_px).map_err(|error| at(path, &error))?;
     let mut text = String::new();

@@ -34,7 +34,7 @@ const LEAST_SIDE_PX: f64 = MappingFollower::LEAST_WINDOW_PX as f64;
                   In a checkout of the project, `cargo run --release --example follow --` stands for `plotter follow`."
 )]
 pub struct FollowCommand {
-    /// Picture with dark lines on light paper: PNG, JPEG, TIFF, PBM or PGM [default: a drawing of its own]
+    /// Picture of lines: PNG, JPEG, TIFF, WebP, BMP, GIF, PBM, PGM or PPM [default: a drawing of its own]
     #[arg(conflicts_with = "from")]
     pub(super) image: Option<PathBuf>,
     /// Which follower
@@ -63,9 +63,13 @@ pub struct FollowCommand {
     /// Most windows [default: 2000000, for the published follower 400]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(super) windows: Option<u64>,
-    /// Size of a camera's pixel on the paper, mm
-    #[arg(long, value_name = "MM", value_parser = pixel_mm, default_value = "0.1")]
-    pub(super) mm_per_px: f64,
+    /// Size of a camera's pixel on the paper, mm [default: as the picture's file says, if a scanner may have
+    /// written it, else 0.1]
+    #[arg(long, value_name = "MM", value_parser = pixel_mm)]
+    pub(super) mm_per_px: Option<f64>,
+    /// Of a TIFF with several pictures, which; 1 is the first
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(super) page: u32,
     /// The machine's TOML file [default: machines/plasma-follower.toml]
     #[arg(long, value_name = "FILE")]
     pub(super) machine: Option<PathBuf>,

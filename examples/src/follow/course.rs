@@ -4,7 +4,7 @@ use super::command::{FollowCommand, PUBLISHED_WINDOWS};
 use super::ended::Ended;
 use super::files::write_files;
 use super::follower::{Eyes, Follower};
-use super::sheet::{Sheet, sheet};
+use super::sheet::{MM_PER_PX, Sheet, sheet};
 use crate::follow::{FollowFrame, FollowGif, FollowMachine, FollowOutcome, MovesFile, WindowSource};
 use crate::shared::{WorkShown, at, read_file};
 use plotter_motion::{Machine, config::MachineKind};
@@ -50,6 +50,7 @@ pub(super) fn follow(arguments: &FollowCommand) -> Result<(), String> {
             .as_ref()
             .filter(|sheet| !sheet.truth.is_empty())
             .map(|sheet| judge(&sheet.truth, table.strokes(), 2.0)),
+        told: sheet.as_ref().map(|sheet| sheet.told.clone()).unwrap_or_default(),
         map,
         motion: machine.finish()?,
     };
@@ -88,7 +89,9 @@ impl<'a> Course<'a> {
     /// Where it begins; without a sheet the windows are real.
     fn new(arguments: &'a FollowCommand, sheet: Option<&Sheet>) -> Result<Self, String> {
         let size = sheet.map(|sheet| [sheet.picture.width(), sheet.picture.height()].map(f64::from));
-        let machine = FollowMachine::new(&machine(arguments)?, arguments.mm_per_px, size, arguments.start)?;
+        let found_mm = sheet.map_or(MM_PER_PX, |sheet| sheet.mm_per_px);
+        let mm_per_px = arguments.mm_per_px.unwrap_or(found_mm);
+        let machine = FollowMachine::new(&machine(arguments)?, mm_per_px, size, arguments.start)?;
         let correction = correction(arguments)?;
         let camera = CameraSettings { seed: arguments.seed, ..*arguments.camera };
         let eyes = match (&arguments.from, sheet) {

@@ -24,6 +24,8 @@ pub struct FollowOutcome<'a> {
     pub said: String,
     /// The tool's path beside the drawing's lines, where those are known and there are any.
     pub judged: Option<Judged>,
+    /// What was taken from the picture's file or assumed, each with its name.
+    pub told: Vec<(&'static str, String)>,
     /// What ours knows.
     pub map: Option<FollowReport>,
     /// What the machine did.
@@ -53,6 +55,9 @@ impl FollowOutcome<'_> {
                 "  path {:.0} px, off the middle of the lines: rms {:.2} px, at most {:.2} px at ({:.0}, {:.0})",
                 judged.path_px, judged.rms_px, judged.max_px, judged.worst.x, judged.worst.y
             );
+        }
+        for (name, said) in &self.told {
+            let _ = writeln!(text, "  {name}: {said}");
         }
         let _ =
             writeln!(text, "  machine: {:.1} s in motion, {} steps", self.motion.motion_s, self.motion.steps);
@@ -115,6 +120,7 @@ impl FollowOutcome<'_> {
             "motion_s": self.motion.motion_s,
             "steps": self.motion.steps,
             "map": self.map,
+            "assumed": self.told.iter().map(|(name, text)| format!("{name}: {text}")).collect::<Vec<_>>(),
             "path_points": strokes.concat(),
             "strokes": strokes,
         });

@@ -1,8 +1,9 @@
 //! What lies under the camera, where that is known.
 
 use super::command::FollowCommand;
-use crate::shared::{at, read_file};
-use plotter_vector::{Gray, PxPoint, Vectorizer, decode, follow::Paper, stroke::Bounded};
+use crate::shared::{SizeOptions, UsualSize, at, read_file, told_notes};
+use plotter_vector::{FileRows, Gray, PxPoint, Vectorizer, follow::Paper, stroke::Bounded};
+use std::io::Cursor;
 
 /// Farther than this the true lines are not from the middle of the picture's lines, px: less than what the
 /// tool is off.
@@ -35,15 +36,32 @@ pub(super) struct Sheet {
     pub(super) picture: Gray,
     /// The middles of its lines.
     pub(super) truth: Vec<Vec<PxPoint>>,
+    /// Size of a pixel on the paper, mm.
+    pub(super) mm_per_px: f64,
+    /// What was taken from the file or assumed.
+    pub(super) told: Vec<(&'static str, String)>,
 }
 
+/// Size of a pixel where nothing says it, mm.
+pub(super) const MM_PER_PX: f64 = 0.1;
+
 pub(super) fn sheet(arguments: &FollowCommand, name: &str) -> Result<Sheet, String> {
+    let (mut mm_per_px, mut told) = (arguments.mm_per_px.unwrap_or(MM_PER_PX), Vec::new());
     let picture = match &arguments.image {
-        Some(path) => decode(&read_file(path)?).map_err(|error| at(path, &error))?,
+        Some(path) => {
+            let scan = FileRows::of_page(Cursor::new(read_file(path)?), arguments.page);
+            let scan = scan.map_err(|error| at(path, &error))?;
+            let asked = SizeOptions { mm_per_px: arguments.mm_per_px, ..SizeOptions::default() };
+            let size = asked.of(scan.notes(), UsualSize::MmPerPx(MM_PER_PX))?;
+            mm_per_px = size.mm_per_px;
+            told.push(("size", size.told()));
+            told.extend(told_notes(scan.notes()));
+            scan.into_gray().map_err(|error| at(path, &error))?
+        }
         None => built_in()?.picture().map_err(|error| error.to_string())?,
     };
     let vectorizer = Vectorizer { ours: Bounded { tolerance_px: TRUTH_PX }, ..Vectorizer::default() };
     let traced = vectorizer.vectorize(&picture).map_err(|error| format!("{name}: {error}"))?;
     let truth = traced.drawing.chords(0.05).strokes().map(<[PxPoint]>::to_vec).collect();
-    Ok(Sheet { picture, truth })
+    Ok(Sheet { picture, truth, mm_per_px, told })
 }

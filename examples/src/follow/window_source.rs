@@ -9,7 +9,8 @@ use std::time::Duration;
 use crate::follow::v4l_camera::V4lCamera;
 
 /// What a picture's name ends with.
-const ENDINGS: [&str; 9] = ["png", "jpg", "jpeg", "tif", "tiff", "pgm", "pbm", "ppm", "pnm"];
+const ENDINGS: [&str; 12] =
+    ["png", "jpg", "jpeg", "tif", "tiff", "webp", "bmp", "gif", "pgm", "pbm", "ppm", "pnm"];
 
 /// Where windows come from. Each is grey, and the square middle of its picture.
 #[derive(Debug)]

@@ -4,7 +4,7 @@ use super::figures::{Report, picture, report_refusal};
 use super::plan::{Refusal, broken_lines, plan};
 use super::scan::Scan;
 use crate::max_error::follow;
-use crate::shared::{Telling, WorkShown, at, read_file, run, write_file};
+use crate::shared::{SizeOptions, Telling, WorkShown, at, read_file, run, write_file};
 use clap::Parser;
 use plotter_motion::{Machine, MachineConfig};
 use std::path::PathBuf;
@@ -23,7 +23,7 @@ use std::process::ExitCode;
                   In a checkout of the project, `cargo run --release --example max_error --` stands for `plotter max-error`."
 )]
 pub struct MaxErrorCommand {
-    /// PNG, JPEG, PBM or PGM picture [default: a flag as line art]
+    /// PNG, JPEG, TIFF, WebP, BMP, GIF, PBM, PGM or PPM picture [default: a flag as line art]
     pub(super) image: Option<PathBuf>,
     /// Greatest distance between the scan's ink and what is drawn, either way, mm
     #[arg(long, value_name = "E", default_value_t = 0.2, allow_negative_numbers = true)]
@@ -31,9 +31,11 @@ pub struct MaxErrorCommand {
     /// The machine's TOML file, with DC motors, a belt or stepper motors [default: the semi-virtual gantry]
     #[arg(long, value_name = "FILE")]
     pub(super) machine: Option<PathBuf>,
-    /// Width of the drawing on the sheet, mm; less where the machine is smaller
-    #[arg(long, value_name = "MM", default_value_t = 50.0, allow_negative_numbers = true)]
-    pub(super) width_mm: f64,
+    #[command(flatten)]
+    pub(super) size: SizeOptions,
+    /// Of a TIFF with several pictures, which; 1 is the first
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(super) page: u32,
     /// Ink that is taken for dirt need not be drawn
     #[arg(long)]
     pub(super) allow_dirt: bool,

@@ -25,6 +25,8 @@ pub(super) struct Report<'a> {
     /// Line by line.
     pub(super) followed: FollowedLines,
     pub(super) dirt: Despeckled,
+    /// What was taken from the file or assumed.
+    told: Vec<(&'static str, String)>,
 }
 
 impl<'a> Report<'a> {
@@ -42,6 +44,7 @@ impl<'a> Report<'a> {
         Self {
             followed: scan.followed(&drawn, args.max_error_mm),
             dirt: scan.dirt,
+            told: scan.told.clone(),
             args,
             name: machine.config().name.to_string(),
             mm_per_px: scan.scale.mm_per_px(),
@@ -84,6 +87,7 @@ impl<'a> Report<'a> {
         json!({
             "machine": self.name,
             "asked_mm": self.args.max_error_mm,
+            "assumed": self.told.iter().map(|(name, text)| format!("{name}: {text}")).collect::<Vec<_>>(),
             "promised_mm": budget.promised_mm(),
             "measured_mm": self.measured_mm(),
             "parts": {
@@ -141,7 +145,9 @@ impl<'a> Report<'a> {
             ("drawing time", format!("{:.1} s", self.duration_s)),
         ];
         let dirt = self.dirt().map(|dirt| format!("{dirt}\n"));
-        rows.map(|(name, value)| format!("{name:28} {value:>22}\n")).concat() + dirt.as_deref().unwrap_or("")
+        let told = self.told.iter().cloned();
+        told.chain(rows).map(|(name, value)| format!("{name:28} {value:>22}\n")).collect::<String>()
+            + dirt.as_deref().unwrap_or("")
     }
 }
 

@@ -1,13 +1,14 @@
 //! The scan, where it lies on the sheet, and its vectorizations.
 
 use super::command::MaxErrorCommand;
-use crate::shared::{at, fit_drawing, read_file, vectorizer};
+use crate::shared::{at, fit_picture, read_file, told_notes, vectorizer};
 use plotter_motion::{Machine, Point, config::VectorizeConfig};
 use plotter_vector::{
-    Bitmap, Drawing, Gray, PxPoint, Scale, Vectorized, decode,
+    Bitmap, Drawing, FileRows, Gray, PxPoint, Scale, Vectorized,
     ink::Despeckled,
     report::{FollowedLines, InkDistance, followed_lines},
 };
+use std::io::Cursor;
 use std::path::Path;
 
 /// Tolerances that the vectorization is tried with, px: from the finest, each a fifth more than the one
@@ -26,6 +27,8 @@ pub(super) struct Scan {
     pub(super) all_ink: Bitmap,
     pub(super) dirt: Despeckled,
     pub(super) scale: Scale,
+    /// What was taken from the file or assumed.
+    pub(super) told: Vec<(&'static str, String)>,
     vectorize: VectorizeConfig,
     /// Strokes along which the ink's widths are measured.
     pub(super) reference: Drawing,
@@ -37,14 +40,17 @@ impl Scan {
             Some(path) => (read_file(path)?, path.as_path()),
             None => (include_bytes!("../../data/flag.png").to_vec(), Path::new("flag.png")),
         };
-        let picture = decode(&bytes).map_err(|error| at(path, &error))?;
-        let scale = fit_drawing((picture.width(), picture.height()), machine, args.width_mm)?;
+        let scan = FileRows::of_page(Cursor::new(&bytes), args.page).map_err(|error| at(path, &error))?;
+        let (scale, size) = fit_picture(scan.notes(), &args.size, machine)?;
+        let mut told = vec![("size", size)];
+        told.extend(told_notes(scan.notes()));
+        let picture = scan.into_gray().map_err(|error| at(path, &error))?;
         // Straight lines: what is followed is what was measured.
         let vectorize = VectorizeConfig { arcs: false, curves: false, ..machine.config().vectorize };
         let settings = vectorizer(&vectorize, scale.mm_per_px())?;
         let (ink, (all_ink, _)) = (settings.ink(&picture), settings.threshold.apply(&picture));
         let (reference, dirt) = (Drawing::default(), Despeckled::default());
-        let mut scan = Self { picture, ink, all_ink, dirt, scale, vectorize, reference };
+        let mut scan = Self { picture, ink, all_ink, dirt, scale, told, vectorize, reference };
         let Vectorized { drawing, removed, .. } =
             scan.traced(REFERENCE_PX).map_err(|error| at(path, &error))?;
         (scan.reference, scan.dirt) = (drawing, removed);

@@ -4,7 +4,8 @@ use super::figures::Summary;
 use super::pictures::Pictures;
 use super::recording::{record, replay};
 use crate::shared::{
-    Telling, at, fit_drawing, html_page, lost_ink, read_file, run, vectorized, vectorizer, write_file,
+    SizeOptions, Telling, at, fit_picture, html_page, lost_ink, read_file, run, told_notes, vectorized,
+    vectorizer, write_file,
 };
 use clap::{Parser, ValueEnum};
 use plotter_motion::{
@@ -15,7 +16,7 @@ use plotter_motion::{
     toolpath::{OutOfReach, targets},
 };
 use plotter_replay::compare::Ways;
-use plotter_vector::{Algorithm, Drawing, FileRows, TracedSheet, Vectorizer, picture::RowSource as _};
+use plotter_vector::{Algorithm, Drawing, Scale, TracedSheet, Vectorizer, picture::FileNotes};
 use std::fmt::Write as _;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -37,7 +38,7 @@ use std::time::Instant;
                   In a checkout of the project, `cargo run --release --example plot --` stands for `plotter plot`."
 )]
 pub struct PlotCommand {
-    /// PNG, JPEG, PBM or PGM picture; without one, a flag as line art
+    /// PNG, JPEG, TIFF, WebP, BMP, GIF, PBM, PGM or PPM picture; without one, a flag as line art
     image: Option<PathBuf>,
     /// The machine's TOML file, whose table [vectorize] ours takes too [default: the semi-virtual gantry]
     #[arg(long, value_name = "FILE")]
@@ -49,9 +50,11 @@ pub struct PlotCommand {
     /// two or three times
     #[arg(long, default_value = "ours")]
     algorithm: AlgorithmArg,
-    /// Width of the drawing on the sheet, mm; less where the machine is smaller
-    #[arg(long, value_name = "MM", default_value_t = 50.0, allow_negative_numbers = true)]
-    width_mm: f64,
+    #[command(flatten)]
+    size: SizeOptions,
+    /// Of a TIFF with several pictures, which; 1 is the first
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    page: u32,
     /// Plots with a firmware instead of the simulated machine: `qemu` for the one in examples/firmware, in
     /// the emulator, or the serial port of a machine that speaks the published protocol or the reliable link
     #[arg(long, value_name = "qemu|PORT")]
@@ -110,12 +113,12 @@ impl PlotCommand {
 pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
     let began = Instant::now();
     let machine = machine(args)?;
-    let (vectorizer, traced) = trace(args, &machine)?;
+    let Plan { vectorizer, traced, scale, told } = trace(args, &machine)?;
     std::fs::create_dir_all(&args.out)
         .map_err(|error| at(&args.out, &format!("this folder cannot be made: {error}")))?;
     let file = |name: &str| args.out.join(name);
 
-    let moves = moves(args, &machine, &traced.drawing)?;
+    let moves = moves(args, &machine, &traced.drawing, scale)?;
     let log_file = file("session.plog");
     let outcome = record(args, &machine, moves, &log_file)?;
     // From here on, the recording is all there is.
@@ -133,6 +136,7 @@ pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
         plotted: plotter.contour_error(Ways::Drawn),
         anomalies: plotter.anomaly_count(),
         wall_s: began.elapsed().as_secs_f64(),
+        told,
     };
     write_file(&file("report.json"), summary.json())?;
     let table = summary.table();
@@ -166,10 +170,13 @@ pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
 }
 
 /// What the machine is to do; the drawing is written on the way.
-fn moves(args: &PlotCommand, machine: &Machine, drawing: &Drawing) -> Result<Vec<PenMove>, String> {
+fn moves(
+    args: &PlotCommand,
+    machine: &Machine,
+    drawing: &Drawing,
+    scale: Scale,
+) -> Result<Vec<PenMove>, String> {
     // The drawing goes through the plotter's own language, so what is plotted is what the file says.
-    let size_px = (drawing.width_px(), drawing.height_px());
-    let scale = fit_drawing(size_px, machine, args.width_mm)?;
     let mut text = String::new();
     plotter_vector::hpgl(drawing, scale, &mut text).map_err(|error| error.to_string())?;
     write_file(&args.out.join("drawing.hpgl"), &text)?;
@@ -228,23 +235,32 @@ fn picture_path(args: &PlotCommand) -> &Path {
     args.image.as_deref().unwrap_or(Path::new("flag.png"))
 }
 
-fn trace(args: &PlotCommand, machine: &Machine) -> Result<(Vectorizer, TracedSheet), String> {
+/// A picture as strokes, and where they lie.
+struct Plan {
+    vectorizer: Vectorizer,
+    traced: TracedSheet,
+    scale: Scale,
+    /// What was taken from the file or assumed.
+    told: Vec<(&'static str, String)>,
+}
+
+fn trace(args: &PlotCommand, machine: &Machine) -> Result<Plan, String> {
     let bytes = match &args.image {
         Some(path) => read_file(path)?,
         None => include_bytes!("../../data/flag.png").to_vec(),
     };
     let path = picture_path(args);
+    let notes = FileNotes::read(Cursor::new(&bytes), args.page).map_err(|error| at(path, &error))?;
+    let (scale, size) = fit_picture(&notes, &args.size, machine)?;
     let vectorizer = match args.algorithm {
         AlgorithmArg::Published => Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() },
         // One pen, whatever the file says: this machine has no carousel.
-        AlgorithmArg::Ours => {
-            let scan = FileRows::new(Cursor::new(&bytes)).map_err(|error| at(path, &error))?;
-            let scale = fit_drawing((scan.width(), scan.height()), machine, args.width_mm)?;
-            vectorizer(&machine.config().vectorize, scale.mm_per_px())?
-        }
+        AlgorithmArg::Ours => vectorizer(&machine.config().vectorize, scale.mm_per_px())?,
     };
-    let traced = vectorized(&vectorizer, bytes).map_err(|error| at(path, &error))?;
-    Ok((vectorizer, traced))
+    let (traced, notes) = vectorized(&vectorizer, bytes, args.page).map_err(|error| at(path, &error))?;
+    let mut told = vec![("size", size)];
+    told.extend(told_notes(&notes));
+    Ok(Plan { vectorizer, traced, scale, told })
 }
 
 /// What the chart of the errors says beside them: the thesis' figures, or what ours promises.

@@ -15,6 +15,8 @@ pub(super) struct Summary<'a> {
     pub(super) plotted: ContourError,
     pub(super) anomalies: u64,
     pub(super) wall_s: f64,
+    /// What was taken from the picture's file or assumed.
+    pub(super) told: Vec<(&'static str, String)>,
 }
 
 impl Summary<'_> {
@@ -37,6 +39,7 @@ impl Summary<'_> {
             "anomalies": self.anomalies,
             "simulated_s": self.outcome.duration.as_secs_f64(),
             "wall_s": self.wall_s,
+            "assumed": self.told.iter().map(|(name, text)| format!("{name}: {text}")).collect::<Vec<_>>(),
         });
         format!("{report:#}\n")
     }
@@ -62,7 +65,7 @@ impl Summary<'_> {
             ("time of the machine", format!("{:.2} s", outcome.duration.as_secs_f64())),
             ("wall time", format!("{:.2} s", self.wall_s)),
         ];
-        figures.into_iter().chain(dirt).collect()
+        self.told.iter().cloned().chain(figures).chain(dirt).collect()
     }
 }
 

@@ -1,6 +1,8 @@
 //! [`lost_ink`]: ink that a vectorization should have drawn, and did not.
 
-use plotter_vector::{Algorithm, FileRows, Pixel, Progress, TracedSheet, Vectorizer, trace::SheetErrors};
+use plotter_vector::{
+    Algorithm, FileRows, Pixel, Progress, TracedSheet, Vectorizer, picture::FileNotes, trace::SheetErrors,
+};
 use std::io::Cursor;
 
 /// How far beyond the promised error the farthest ink may lie from the strokes, as a multiple of the width of
@@ -36,16 +38,22 @@ pub fn lost_ink(vectorizer: &Vectorizer, errors: &SheetErrors, line_px: Option<u
     }
 }
 
-/// A picture file as strokes with their errors; where ink was lost, [`lost_ink`] tells.
+/// A page of a picture file as strokes with their errors, and what the file says of itself; where ink was
+/// lost, [`lost_ink`] tells.
 ///
 /// # Errors
 ///
 /// What is wrong with the file, in words.
-pub fn vectorized(vectorizer: &Vectorizer, file: Vec<u8>) -> Result<TracedSheet, String> {
-    let mut scan = FileRows::new(Cursor::new(file)).map_err(|error| error.to_string())?;
-    vectorizer
+pub fn vectorized(
+    vectorizer: &Vectorizer,
+    file: Vec<u8>,
+    page: u32,
+) -> Result<(TracedSheet, FileNotes), String> {
+    let mut scan = FileRows::of_page(Cursor::new(file), page).map_err(|error| error.to_string())?;
+    let traced = vectorizer
         .vectorize_rows_with_errors(&mut scan, &mut Progress::silent())
-        .map_err(|error| error.to_string())
+        .map_err(|error| error.to_string())?;
+    Ok((traced, scan.notes().clone()))
 }
 
 #[cfg(test)]

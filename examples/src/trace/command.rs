@@ -3,14 +3,17 @@
 use super::figures::{Report, table};
 use super::files::{check_size, prints_file, write_files};
 use super::settings::settings;
-use super::traced::{by_rows, in_colour, picture_bytes};
-use crate::shared::{ExitStatus, Telling, at, is_standard, lost_ink, run, write_output};
+use super::traced::{Input, by_rows, in_colour};
+use crate::shared::{ExitStatus, SizeOptions, Telling, UsualSize, is_standard, lost_ink, run, write_output};
 use crate::trace::{Interrupt, Overlay, overlay_png};
 use clap::{Parser, ValueEnum};
 use std::fs::File;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+/// Size of a pixel where neither the file nor an option says it, mm.
+const MM_PER_PX: f64 = 0.1;
 
 /// The picture that is traced when none is given.
 pub(super) const FLAG: &[u8] = include_bytes!("../../data/flag.png");
@@ -29,7 +32,7 @@ pub(super) const FLAG: &[u8] = include_bytes!("../../data/flag.png");
                   In a checkout of the project, `cargo run --release --example trace --` stands for `plotter trace`."
 )]
 pub struct TraceCommand {
-    /// PNG, JPEG, TIFF, PBM, PGM or PPM picture of lines, of any size but for --pens; - is the standard input
+    /// PNG, JPEG, TIFF, WebP, BMP, GIF, PBM, PGM or PPM picture of lines, of any size but for --pens; - is the standard input
     /// [default: the flag that comes with the examples]
     image: Option<PathBuf>,
     /// Vectorization
@@ -73,16 +76,18 @@ pub struct TraceCommand {
     /// What is wider is an area, px (ours only) [default: found from the picture]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) max_line_px: Option<i64>,
-    /// Size of a pixel on the sheet, mm: 0.1 is 254 dots per inch, 4 plotter units a pixel
-    #[arg(long, value_name = "MM", default_value_t = 0.1, allow_negative_numbers = true)]
-    pub(super) mm_per_px: f64,
+    #[command(flatten)]
+    pub(super) size: SizeOptions,
+    /// Of a TIFF with several pictures, which; 1 is the first
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(super) page: u32,
     /// A machine's TOML file, whose table [vectorize] is taken where no option says otherwise
     #[arg(long, value_name = "F.toml")]
     pub(super) config: Option<PathBuf>,
     /// Threads to work with; the result is the same with any number [default: one a core]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) threads: Option<i64>,
-    /// Writes the strokes as SVG: the picture's size in px, y down, pixel centres at .5
+    /// Writes the strokes as SVG, in true size: its unit is the picture's px, y down, pixel centres at .5
     #[arg(long, value_name = "F")]
     pub(super) svg: Option<PathBuf>,
     /// Writes the strokes as HPGL, y up from the centre of the lower left pixel
@@ -179,27 +184,24 @@ pub(super) fn trace(arguments: &TraceCommand, stopped: &mut bool) -> Result<(), 
     let settings = settings(arguments)?;
     let interrupt = Interrupt::new()?;
     let prints_file = prints_file(arguments, &settings)?;
+    let input = Input::open(arguments.image.as_deref())?;
     let name = match arguments.image.as_deref() {
         Some(path) if is_standard(path) => "standard input".into(),
         given => given.unwrap_or(Path::new("flag.png")).display().to_string(),
     };
     let here = |error: &dyn std::fmt::Display| format!("{name}: {error}");
-    let work = || match (&settings.pens, &arguments.image) {
-        (Some(pens), path) => {
-            in_colour(&settings, pens, path.as_deref(), arguments, interrupt).map_err(|error| here(&error))
-        }
-        (None, Some(path)) if path.is_file() => {
-            let file = File::open(path).map_err(|error| at(path, &format!("cannot be read: {error}")))?;
-            by_rows(&settings, file, arguments, interrupt).map_err(|error| here(&error))
-        }
-        // What cannot be read twice, as a pipe, is kept.
-        (None, Some(path)) => {
-            let bytes = Cursor::new(picture_bytes(path)?);
-            by_rows(&settings, bytes, arguments, interrupt).map_err(|error| here(&error))
-        }
-        (None, None) => {
-            by_rows(&settings, Cursor::new(FLAG), arguments, interrupt).map_err(|error| here(&error))
-        }
+    let notes = input.notes(arguments.page).map_err(|error| here(&error))?;
+    let settings = settings.in_size(arguments.size.of(&notes, UsualSize::MmPerPx(MM_PER_PX))?)?;
+    let work = || {
+        let traced = match (&settings.pens, &input) {
+            (Some(pens), _) => in_colour(&settings, pens, &input, arguments, interrupt),
+            (None, Input::File(path)) => {
+                let file = File::open(path).map_err(|error| format!("cannot be read: {error}"));
+                file.and_then(|file| by_rows(&settings, file, arguments, interrupt))
+            }
+            (None, Input::Bytes(bytes)) => by_rows(&settings, Cursor::new(bytes), arguments, interrupt),
+        };
+        traced.map_err(|error| here(&error))
     };
     let traced = match &settings.threads {
         Some(pool) => pool.install(work),
@@ -212,8 +214,8 @@ pub(super) fn trace(arguments: &TraceCommand, stopped: &mut bool) -> Result<(), 
     let traced = traced?;
     let drawing = &traced.drawing;
     let report = Report::new(&settings, &traced);
-    check_size(arguments, drawing)?;
-    write_files(arguments, &traced, &report, &name)?;
+    check_size(arguments, &settings.size, drawing)?;
+    write_files(arguments, &settings.size, &traced, &report, &name)?;
     let mut worst = None;
     if let (Some(path), Some(picture)) = (&settings.overlay, &traced.picture) {
         worst = traced.errors.as_ref().and_then(|errors| errors.worst);

@@ -2,7 +2,13 @@
 
 use super::settings::Settings;
 use super::traced::Traced;
-use plotter_vector::{Algorithm, Drawing, ErrorReport, report::Bin, trace::SheetErrors};
+use crate::shared::{PictureSize, told_notes};
+use plotter_vector::{
+    Algorithm, Drawing, ErrorReport,
+    picture::{FileNotes, Ground},
+    report::Bin,
+    trace::SheetErrors,
+};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -13,6 +19,12 @@ const RASTER_PX: f64 = 0.5;
 /// The figures of a tracing.
 #[derive(Debug, Serialize)]
 pub(super) struct Report<'a> {
+    picture: PictureReport,
+    /// What was taken from the file or assumed, a line each.
+    assumed: Vec<String>,
+    /// The same as rows of the table.
+    #[serde(skip)]
+    told: Vec<(&'static str, String)>,
     /// What was drawn of the ink; the published algorithm has no choice.
     mode: Option<plotter_vector::Mode>,
     pens: Vec<PenReport<'a>>,
@@ -43,7 +55,12 @@ impl<'a> Report<'a> {
         let drawing = &traced.drawing;
         let errors: Option<&ErrorReport> = traced.errors.as_ref().map(|errors| &errors.report);
         let ours = settings.vectorizer.algorithm == Algorithm::Ours;
+        let mut told = vec![("size", settings.size.told())];
+        told.extend(told_notes(&traced.notes));
         Self {
+            picture: PictureReport::new(&traced.notes, &settings.size),
+            assumed: told.iter().map(|(name, text)| format!("{name}: {text}")).collect(),
+            told,
             mode: ours.then_some(settings.vectorizer.mode),
             pens: traced.palette.pens().iter().map(|pen| pen_report(pen, drawing)).collect(),
             vertices: drawing.vertices(),
@@ -73,6 +90,49 @@ impl<'a> Report<'a> {
             pen_up_px: drawing.pen_up_px(),
             time_ms: traced.time.as_secs_f64() * 1e3,
             peak_rss_mb: peak_rss_mb(),
+        }
+    }
+}
+
+/// What the file says of its picture, and how large that is on the sheet.
+#[derive(Debug, Serialize)]
+struct PictureReport {
+    format: String,
+    width_px: u32,
+    height_px: u32,
+    /// As in EXIF, 1 to 8: how it is stored.
+    orientation: u8,
+    page: u32,
+    pages: u32,
+    is_animated: bool,
+    /// What a transparent one was laid on.
+    ground: Option<&'static str>,
+    /// Dots per inch across and down, as the file says, whatever it says.
+    dpi: Option<[f64; 2]>,
+    width_mm: f64,
+    height_mm: f64,
+    mm_per_px: f64,
+}
+
+impl PictureReport {
+    fn new(notes: &FileNotes, size: &PictureSize) -> Self {
+        let [width_mm, height_mm] = size.sheet_mm;
+        Self {
+            format: notes.format.to_string(),
+            width_px: notes.width_px,
+            height_px: notes.height_px,
+            orientation: notes.orientation.number(),
+            page: notes.page,
+            pages: notes.pages,
+            is_animated: notes.is_animated,
+            ground: notes.ground.map(|ground| match ground {
+                Ground::White => "white",
+                Ground::Black => "black",
+            }),
+            dpi: notes.resolution.map(|resolution| resolution.dpi()),
+            width_mm,
+            height_mm,
+            mm_per_px: size.mm_per_px,
         }
     }
 }
@@ -127,6 +187,7 @@ fn dirt_of(report: &Report<'_>) -> Option<String> {
 pub(super) fn table(title: &str, report: &Report<'_>, megapixels: f64, circled: Option<String>) -> String {
     let rss = report.peak_rss_mb.map_or("-".into(), |rss| format!("{rss:.1} MB"));
     let px = |error_px: Option<f64>| error_px.map(|error_px| format!("{error_px:.4} px"));
+    let told = report.told.iter().map(|(name, text)| (*name, Some(text.clone())));
     let rows = [
         ("line width", report.pen_px.map(|pen_px| format!("{pen_px} px"))),
         ("vertices", Some(report.vertices.to_string())),
@@ -145,6 +206,7 @@ pub(super) fn table(title: &str, report: &Report<'_>, megapixels: f64, circled: 
         ("dirt", dirt_of(report)),
     ];
     let mut out = format!("{title}\n");
+    let rows: Vec<(&str, Option<String>)> = told.chain(rows).collect();
     for (name, value) in rows.iter().filter_map(|(name, value)| Some((name, value.as_ref()?))) {
         let (number, unit) = value.split_once(' ').unwrap_or((value, ""));
         out.push_str(format!("  {name:10} {number:>10} {unit}").trim_end());

@@ -2,9 +2,9 @@
 
 use super::command::{GcodePen, TraceCommand};
 use super::figures::Report;
-use super::settings::Settings;
+use super::settings::Unscaled;
 use super::traced::Traced;
-use crate::shared::{is_standard, write_output};
+use crate::shared::{PictureSize, is_standard, write_output};
 use plotter_motion::{
     Point,
     gcode::{PenControl, WriteOptions},
@@ -30,7 +30,7 @@ const DOT_PX: f64 = 3.0;
 const COARSE_PX: f64 = 4.0;
 
 /// Whether one of the files is the standard output; two would be mixed.
-pub(super) fn prints_file(arguments: &TraceCommand, settings: &Settings) -> Result<bool, String> {
+pub(super) fn prints_file(arguments: &TraceCommand, settings: &Unscaled) -> Result<bool, String> {
     let files = [
         ("--svg", &arguments.svg),
         ("--hpgl", &arguments.hpgl),
@@ -51,8 +51,13 @@ pub(super) fn prints_file(arguments: &TraceCommand, settings: &Settings) -> Resu
 
 /// Refuses a size of pixels with which a drawing becomes a point, and warns of one with which its shapes fall
 /// together.
-pub(super) fn check_size(arguments: &TraceCommand, drawing: &Drawing) -> Result<(), String> {
-    let mm_per_px = arguments.mm_per_px;
+pub(super) fn check_size(
+    arguments: &TraceCommand,
+    size: &PictureSize,
+    drawing: &Drawing,
+) -> Result<(), String> {
+    let mm_per_px = size.mm_per_px;
+    let asked = size.asked.unwrap_or("--mm-per-px");
     let bounds = drawing.strokes().flatten().fold(None, |bounds: Option<(PxPoint, PxPoint)>, at| {
         let (least, most) = bounds.unwrap_or((*at, *at));
         let least = PxPoint::new(least.x.min(at.x), least.y.min(at.y));
@@ -66,13 +71,13 @@ pub(super) fn check_size(arguments: &TraceCommand, drawing: &Drawing) -> Result<
         // What is smaller than that is a dot on any sheet.
         if side_px >= DOT_PX && side_px < step_px {
             return Err(format!(
-                "--mm-per-px: with {mm_per_px} mm the whole drawing is less than the {step_mm} mm that {option} tells apart; \
+                "{asked}: with {mm_per_px} mm the whole drawing is less than the {step_mm} mm that {option} tells apart; \
                  0.1 gives 254 dots per inch"
             ));
         }
         if side_px >= DOT_PX && step_px > COARSE_PX {
             eprintln!(
-                "trace: warning: --mm-per-px: with {mm_per_px} mm the {step_mm} mm that {option} tells apart are {step_px:.0} px, \
+                "trace: warning: {asked}: with {mm_per_px} mm the {step_mm} mm that {option} tells apart are {step_px:.0} px, \
                  and small shapes fall together; 0.1 gives 254 dots per inch"
             );
         }
@@ -82,6 +87,7 @@ pub(super) fn check_size(arguments: &TraceCommand, drawing: &Drawing) -> Result<
 
 pub(super) fn write_files(
     arguments: &TraceCommand,
+    size: &PictureSize,
     traced: &Traced,
     report: &Report<'_>,
     name: &str,
@@ -90,16 +96,16 @@ pub(super) fn write_files(
     let text = |error: std::fmt::Error| error.to_string();
     if let Some(path) = &arguments.svg {
         let mut out = String::new();
-        svg_in_colour(drawing, &traced.palette, 1.0, &mut out).map_err(text)?;
+        svg_in_colour(drawing, &traced.palette, Some(size.mm_per_px), 1.0, &mut out).map_err(text)?;
         write_output(path, out)?;
     }
     if let Some(path) = &arguments.hpgl {
         let mut out = String::new();
-        hpgl(drawing, sheet(arguments, drawing)?, &mut out).map_err(|error| error.to_string())?;
+        hpgl(drawing, sheet(size, drawing)?, &mut out).map_err(|error| error.to_string())?;
         write_output(path, out)?;
     }
     if let Some(path) = &arguments.gcode {
-        write_output(path, gcode_text(drawing, sheet(arguments, drawing)?, arguments.gcode_pen)?)?;
+        write_output(path, gcode_text(drawing, sheet(size, drawing)?, arguments.gcode_pen)?)?;
     }
     if let Some(path) = &arguments.points {
         write_output(path, points(drawing).map_err(text)?)?;
@@ -120,8 +126,8 @@ pub(super) fn write_files(
 }
 
 /// From the picture to the plotter's sheet.
-pub(super) fn sheet(arguments: &TraceCommand, drawing: &Drawing) -> Result<Scale, String> {
-    let mm_per_px = arguments.mm_per_px;
+pub(super) fn sheet(size: &PictureSize, drawing: &Drawing) -> Result<Scale, String> {
+    let mm_per_px = size.mm_per_px;
     // The picture's corner lies half a pixel off, so that the centre of its lower left pixel is the origin.
     let corner = Point::new(-0.5 * mm_per_px, -0.5 * mm_per_px);
     Scale::new(drawing.height_px(), mm_per_px, corner).map_err(|error| error.to_string())

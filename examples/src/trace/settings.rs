@@ -1,7 +1,7 @@
 //! What the options and the machine's file ask for.
 
 use super::command::{Choice, ModeChoice, OrderChoice, PreferChoice, TraceCommand};
-use crate::shared::{at, read_file, vectorizer};
+use crate::shared::{PictureSize, at, read_file, vectorizer};
 use plotter_motion::{
     Machine,
     config::{PensChoice, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode},
@@ -22,7 +22,7 @@ const MAX_PEN_MM: f64 = 100.0;
 /// Most threads that are started.
 const MAX_THREADS: usize = 1024;
 
-/// What the options and the machine's file ask for.
+/// What the options and the machine's file ask for, once the picture's size is known.
 #[derive(Debug)]
 pub(super) struct Settings {
     pub(super) vectorizer: Vectorizer,
@@ -30,10 +30,32 @@ pub(super) struct Settings {
     pub(super) pens: Option<Pens>,
     pub(super) threads: Option<rayon::ThreadPool>,
     pub(super) overlay: Option<PathBuf>,
+    pub(super) size: PictureSize,
+}
+
+/// The same before anything is known of the picture: what is in mm waits.
+#[derive(Debug)]
+pub(super) struct Unscaled {
+    vectorizer: Vectorizer,
+    config: VectorizeConfig,
+    pens: Option<Pens>,
+    threads: Option<rayon::ThreadPool>,
+    pub(super) overlay: Option<PathBuf>,
+}
+
+impl Unscaled {
+    /// For a picture of that size.
+    pub(super) fn in_size(self, size: PictureSize) -> Result<Settings, String> {
+        let Self { mut vectorizer, config, pens, threads, overlay } = self;
+        if vectorizer.algorithm == Algorithm::Ours {
+            vectorizer.areas = self::vectorizer(&config, size.mm_per_px)?.areas;
+        }
+        Ok(Settings { vectorizer, pens, threads, overlay, size })
+    }
 }
 
 /// The machine's file, then the options: what they say wins.
-pub(super) fn settings(arguments: &TraceCommand) -> Result<Settings, String> {
+pub(super) fn settings(arguments: &TraceCommand) -> Result<Unscaled, String> {
     let mut config = match &arguments.config {
         Some(path) => {
             let text = String::from_utf8(read_file(path)?)
@@ -42,12 +64,7 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Settings, String> {
         }
         None => VectorizeConfig::default(),
     };
-    let mm_per_px = arguments.mm_per_px;
-    if !(mm_per_px > 0.0 && mm_per_px.is_finite()) {
-        return Err(format!(
-            "--mm-per-px: {mm_per_px} mm is not a positive number; 0.1 gives 254 dots per inch"
-        ));
-    }
+    arguments.size.check()?;
     if let Some(text) = &arguments.threshold {
         config.threshold = match text.parse::<ThresholdMethod>().map_err(|error| format!("--{error}"))? {
             ThresholdMethod::Otsu => ThresholdChoice::Otsu,
@@ -65,7 +82,7 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Settings, String> {
         let threshold =
             vectorizer(&VectorizeConfig { threshold: config.threshold, ..Default::default() }, 1.0)?;
         let vectorizer = Vectorizer { algorithm: Algorithm::Published, ..threshold };
-        return Ok(Settings { vectorizer, pens: None, threads, overlay });
+        return Ok(Unscaled { vectorizer, config, pens: None, threads, overlay });
     }
     match arguments.max_error_px {
         Some(bad) if !(bad > 0.0 && bad.is_finite()) => {
@@ -136,8 +153,10 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Settings, String> {
         Some(PreferChoice::Both) | None => Prefer::Both,
         Some(PreferChoice::Ink) => Prefer::Ink,
     };
-    let vectorizer = Vectorizer { prefer, ..vectorizer(&config, mm_per_px)? };
-    Ok(Settings { vectorizer, pens, threads, overlay })
+    // What is in mm waits for the picture's size.
+    let unscaled = VectorizeConfig { hatch_mm: 0.0, pen_mm: 0.0, ..config };
+    let vectorizer = Vectorizer { prefer, ..vectorizer(&unscaled, 1.0)? };
+    Ok(Unscaled { vectorizer, config, pens, threads, overlay })
 }
 
 /// Refuses options that the published algorithm does not have.

@@ -5,14 +5,16 @@ use super::settings::Settings;
 use crate::shared::{WorkShown, is_standard, read_file, read_input};
 use crate::trace::{Interrupt, overlay_step};
 use plotter_vector::{
-    Colour, DecodeError, Drawing, FileRows, Palette, Pixel, Progress, decode_colour,
+    Colour, DecodeError, Drawing, FileRows, Palette, Pixel, Progress,
     ink::{Despeckled, Pens, pen_width_px},
-    picture::{Row, RowSource as _},
+    picture::{FileNotes, Row, RowSource as _, decode_page_in_colour},
     trace::SheetErrors,
 };
-use std::io::{Read, Seek};
+use std::borrow::Cow;
+use std::fs::File;
+use std::io::{Cursor, Read, Seek};
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Parts of the work that are told apart: hundredths.
@@ -61,13 +63,47 @@ pub(super) struct Traced {
     /// For the overlay, where one is asked for.
     pub(super) picture: Option<Picture>,
     pub(super) time: Duration,
+    /// What the file says of itself.
+    pub(super) notes: FileNotes,
 }
 
-pub(super) fn picture_bytes(path: &Path) -> Result<Vec<u8>, String> {
-    if is_standard(path) {
-        read_input().map_err(|error| format!("standard input: {error}"))
-    } else {
-        read_file(path)
+/// The picture's file: one that can be read as often as it takes, or the bytes of what cannot, as a pipe.
+#[derive(Debug)]
+pub(super) enum Input {
+    File(PathBuf),
+    Bytes(Cow<'static, [u8]>),
+}
+
+impl Input {
+    /// The file, the standard input, or the picture that is taken where none is given.
+    pub(super) fn open(path: Option<&Path>) -> Result<Self, String> {
+        Ok(match path {
+            None => Self::Bytes(FLAG.into()),
+            Some(path) if is_standard(path) => {
+                Self::Bytes(read_input().map_err(|error| format!("standard input: {error}"))?.into())
+            }
+            Some(path) if path.is_file() => Self::File(path.into()),
+            Some(path) => Self::Bytes(read_file(path)?.into()),
+        })
+    }
+
+    /// What it says of itself.
+    pub(super) fn notes(&self, page: u32) -> Result<FileNotes, String> {
+        let notes = match self {
+            Self::File(path) => {
+                let file = File::open(path).map_err(|error| format!("cannot be read: {error}"))?;
+                FileNotes::read(file, page)
+            }
+            Self::Bytes(bytes) => FileNotes::read(Cursor::new(bytes), page),
+        };
+        notes.map_err(|error| error.to_string())
+    }
+
+    fn bytes(&self) -> Result<Cow<'_, [u8]>, String> {
+        match self {
+            Self::File(path) => read_file(path).map(Cow::Owned),
+            Self::Bytes(bytes) => Ok(Cow::Borrowed(bytes)),
+        }
     }
 }
 
@@ -79,7 +115,7 @@ pub(super) fn by_rows<R: Read + Seek>(
     interrupt: Interrupt,
 ) -> Result<Traced, String> {
     let start = Instant::now();
-    let mut scan = FileRows::new(file).map_err(|error| error.to_string())?;
+    let mut scan = FileRows::of_page(file, arguments.page).map_err(|error| error.to_string())?;
     let bar = progress(arguments);
     let mut report = |done: f64| {
         bar.set(steps(done));
@@ -104,6 +140,7 @@ pub(super) fn by_rows<R: Read + Seek>(
         widest_px: sheet.pen_px,
         picture,
         time,
+        notes: scan.notes().clone(),
     })
 }
 
@@ -147,12 +184,12 @@ fn thumbnail<R: Read + Seek>(scan: &mut FileRows<R>) -> Result<Picture, String> 
 pub(super) fn in_colour(
     settings: &Settings,
     pens: &Pens,
-    path: Option<&Path>,
+    input: &Input,
     arguments: &TraceCommand,
     interrupt: Interrupt,
 ) -> Result<Traced, String> {
-    let read = path.map(picture_bytes).transpose()?;
-    let colour = decode_colour(read.as_deref().unwrap_or(FLAG)).map_err(|error| match error {
+    let read = input.bytes()?;
+    let (colour, notes) = decode_page_in_colour(&read, arguments.page).map_err(|error| match error {
         DecodeError::TooLarge(_) | DecodeError::TooMuchMemory { .. } => format!(
             "--pens: colours are told apart on the whole picture, but {error}; or take --pens 1, which is traced by \
              rows at any size"
@@ -177,5 +214,15 @@ pub(super) fn in_colour(
     let picture = settings.overlay.is_some().then_some(Picture::Colour(colour));
     let widest_px = found.inks.iter().filter_map(pen_width_px).max();
     let removed = found.traced.removed;
-    Ok(Traced { errors, removed, palette: found.palette, pen_px: None, widest_px, picture, time, drawing })
+    Ok(Traced {
+        errors,
+        removed,
+        palette: found.palette,
+        pen_px: None,
+        widest_px,
+        picture,
+        time,
+        notes,
+        drawing,
+    })
 }

@@ -51,7 +51,7 @@ fn lost_ink_is_said_with_its_place_after_the_files_are_written() {
 fn no_picture_of_the_examples_has_lost_ink() {
     for name in ["flag.png", "technical.png"] {
         let vectorizer = Vectorizer::default();
-        let traced = vectorized(&vectorizer, std::fs::read(data(name)).unwrap()).unwrap();
+        let (traced, _) = vectorized(&vectorizer, std::fs::read(data(name)).unwrap(), 1).unwrap();
         let errors = traced.errors.unwrap();
         println!("{name:16} width {:?} px, greatest error {:.2} px", traced.pen_px, errors.report.max_px);
         assert_eq!(lost_ink(&vectorizer, &errors, traced.pen_px), Ok(()), "{name}");

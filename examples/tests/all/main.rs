@@ -28,6 +28,7 @@ mod marks_files;
 mod max_error_command;
 #[path = "../../../plotter-motion/tests/all/papers.rs"]
 mod papers;
+mod picture_files;
 mod plot_command;
 mod program_command;
 #[path = "../../../plotter-motion/tests/all/real_files/mod.rs"]

@@ -257,7 +257,7 @@ impl Folder {
         self.write("colour.ppm", [b"P6 60 60 255\n".to_vec(), pixels].concat())
     }
 
-    fn trace_report(&self, picture: &str, options: &[&str]) -> serde_json::Value {
+    pub(crate) fn trace_report(&self, picture: &str, options: &[&str]) -> serde_json::Value {
         let json = self.file("report.json");
         let output = run_example("trace", &[&[picture, "--report", &json], options].concat());
         assert!(output.status.success(), "{options:?}: {}", String::from_utf8_lossy(&output.stderr));
@@ -570,7 +570,9 @@ fn by_rows_and_whole_are_the_same_bytes() {
             let vectorizer = plotter_vector::Vectorizer { arcs, ..Default::default() };
             let whole = vectorizer.vectorize(&whole).unwrap();
             let mut expected = String::new();
-            plotter_vector::svg(&whole.drawing, 1.0, &mut expected).unwrap();
+            let palette = plotter_vector::Palette::default();
+            plotter_vector::write::svg_in_colour(&whole.drawing, &palette, Some(0.1), 1.0, &mut expected)
+                .unwrap();
             let svg = folder.file("a.svg");
             let report = folder.trace_report(
                 picture,

@@ -128,12 +128,15 @@ impl Resolution {
     }
 }
 
-/// Dots per inch with as many decimals as they need, two at most.
+/// Dots per inch with as many decimals as they need, two at most; a whole number where PNG, which counts
+/// pixels of a whole metre, cannot be nearer to it.
 struct Dpi(f64);
 
 impl fmt::Display for Dpi {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let text = format!("{:.2}", self.0);
+        const WITHIN_DPI: f64 = 0.5 * MM_PER_INCH / 1000.0;
+        let whole = libm::round(self.0);
+        let text = format!("{:.2}", if (self.0 - whole).abs() <= WITHIN_DPI { whole } else { self.0 });
         f.write_str(text.trim_end_matches('0').trim_end_matches('.'))
     }
 }

@@ -27,11 +27,14 @@ const MOST_RAD: f64 = 2.0 * PI / 3.0;
 /// # Ok::<(), std::fmt::Error>(())
 /// ```
 pub fn svg(drawing: &Drawing, stroke_width_px: f64, out: &mut impl Write) -> fmt::Result {
-    svg_in_colour(drawing, &Palette::default(), stroke_width_px, out)
+    svg_in_colour(drawing, &Palette::default(), None, stroke_width_px, out)
 }
 
 /// As [`svg`], with a group for each pen in the colour that the palette gives it: in ascending order of their
 /// numbers, within each in the order of drawing. A pen that the palette does not have is black.
+///
+/// With `mm_per_px` the sheet is in true size, its width and height in mm; the view box stays the picture's
+/// pixels.
 ///
 /// # Errors
 /// Those of the writer.
@@ -42,20 +45,25 @@ pub fn svg(drawing: &Drawing, stroke_width_px: f64, out: &mut impl Write) -> fmt
 /// let mut drawing = Drawing::new(4, 3);
 /// drawing.push_with_pen(2, [PxPoint::new(0.5, 1.5), PxPoint::new(3.5, 1.5)]);
 /// let mut text = String::new();
-/// svg_in_colour(&drawing, &Palette::new(vec![red])?, 1.0, &mut text)?;
+/// svg_in_colour(&drawing, &Palette::new(vec![red])?, Some(0.5), 1.0, &mut text)?;
+/// assert!(text.contains("width=\"2mm\" height=\"1.5mm\" viewBox=\"0 0 4 3\""));
 /// assert!(text.contains("stroke=\"#d01818\""));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn svg_in_colour(
     drawing: &Drawing,
     palette: &Palette,
+    mm_per_px: Option<f64>,
     stroke_width_px: f64,
     out: &mut impl Write,
 ) -> fmt::Result {
     let (width, height) = (drawing.width_px(), drawing.height_px());
+    let side = |px: u32| mm_per_px.map_or_else(|| px.to_string(), |mm_per_px| millimetres(px, mm_per_px));
     writeln!(
         out,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {width} {height}\">",
+        side(width),
+        side(height)
     )?;
     // A drawing without strokes has its group too.
     let pens = if drawing.strokes().len() == 0 { vec![1] } else { drawing.pens() };
@@ -64,6 +72,13 @@ pub fn svg_in_colour(
         group(drawing, pen, colour, stroke_width_px, out)?;
     }
     out.write_str("</svg>\n")
+}
+
+/// A side of the sheet, to the millionth of a millimetre: rounded more, both sides would not be in the same
+/// scale.
+fn millimetres(px: u32, mm_per_px: f64) -> String {
+    let text = format!("{:.6}", f64::from(px) * mm_per_px);
+    format!("{}mm", text.trim_end_matches('0').trim_end_matches('.'))
 }
 
 /// The strokes of one pen.

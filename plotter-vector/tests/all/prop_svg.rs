@@ -76,7 +76,7 @@ proptest! {
         let mut sorted = strokes.clone();
         sorted.sort_by_key(|(pen, _)| *pen);
         let mut text = String::new();
-        svg_in_colour(&drawing(&strokes), &palette, 1.0, &mut text).unwrap();
+        svg_in_colour(&drawing(&strokes), &palette, None, 1.0, &mut text).unwrap();
         let read = read_svg(text.as_bytes(), &SvgOptions::default()).unwrap();
         prop_assert!(same(&sorted, &read.drawing));
         for (index, (pen, _)) in sorted.iter().enumerate() {

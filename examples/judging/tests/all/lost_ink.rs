@@ -12,7 +12,7 @@ fn no_picture_of_the_corpus_has_lost_ink() {
     for picture in all() {
         let mut file = Cursor::new(Vec::new());
         picture.draw().write_to(&mut file, ImageFormat::Png).unwrap();
-        let traced = vectorized(&vectorizer, file.into_inner()).unwrap();
+        let (traced, _) = vectorized(&vectorizer, file.into_inner(), 1).unwrap();
         let errors = traced.errors.unwrap();
         let name = picture.name;
         println!("{name:16} width {:?} px, greatest error {:.2} px", traced.pen_px, errors.report.max_px);

@@ -50,14 +50,9 @@ fn by_rows(bytes: &[u8]) -> Result<Levels, DecodeError> {
     error.map_or(Ok(levels), Err)
 }
 
-/// The picture decoded by the crate `image` alone, turned upright as that reads how it is stored.
+/// The picture decoded by the crate `image` alone, as it is stored and on white paper.
 fn by_image(bytes: &[u8]) -> image::ImageResult<Levels> {
-    use image::ImageDecoder as _;
-    let reader = image::ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
-    let mut decoder = reader.into_decoder()?;
-    let orientation = decoder.orientation().unwrap_or(image::metadata::Orientation::NoTransforms);
-    let mut picture = image::DynamicImage::from_decoder(decoder)?;
-    picture.apply_orientation(orientation);
+    let picture = image::load_from_memory(bytes)?;
     let levels = match &picture {
         image::DynamicImage::ImageLuma8(gray) => gray.as_raw().clone(),
         // Its iterator panics where there are rows without columns.
