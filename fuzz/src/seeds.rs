@@ -12,6 +12,23 @@ fn main() -> std::io::Result<()> {
             std::fs::write(folder.join(format!("seed-{number:03}")), bytes)?;
         }
     }
+    let folder = corpus.join("metadata");
+    std::fs::create_dir_all(&folder)?;
+    let exif = [
+        pictures::Exif { orientation: 6, ..Default::default() },
+        pictures::Exif { resolution: Some(([(300, 1); 2], 2)), lens: true, orientation: 8 },
+    ];
+    let mut seeds: Vec<Vec<u8>> = Vec::new();
+    for exif in exif {
+        // In a JPEG, a PNG and a WebP.
+        seeds.extend([0, 3, 5].map(|kind| [&[kind], &exif.bytes()[..]].concat()));
+    }
+    seeds.push([&[1][..], b"\x01\x02\x01\x01\x2c\x01\x2c\0\0"].concat());
+    seeds.push([&[4][..], &[0, 0, 0x2e, 0x23, 0, 0, 0x2e, 0x23, 1]].concat());
+    seeds.extend(pictures::with_metadata(9, 6).into_iter().map(|(_, bytes)| [&[7], &bytes[..]].concat()));
+    for (number, seed) in seeds.into_iter().enumerate() {
+        std::fs::write(folder.join(format!("seed-{number:03}")), seed)?;
+    }
     let all = [
         ("hpgl", &HPGL[..]),
         ("cutters", &CUTTERS),
