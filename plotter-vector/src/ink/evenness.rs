@@ -14,8 +14,9 @@ const LEAST_CONTRAST: f64 = 60.0;
 
 /// Places between the mean of the dark and that of the light levels, in parts of the way, where the lines must have as
 /// many rims as at the level itself; and by how many parts they may differ.
-const BETWEEN: [f64; 7] = [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8];
-const RIMS_DIFFER: f64 = 0.05;
+/// Near the ink's own levels grain shows first.
+const BETWEEN: [(f64, f64); 8] =
+    [(0.1, 0.08), (0.2, 0.05), (0.3, 0.05), (0.4, 0.05), (0.5, 0.05), (0.6, 0.05), (0.7, 0.05), (0.8, 0.05)];
 
 /// And by so many rims in any case.
 const FEW_RIMS: f64 = 4.0;
@@ -117,10 +118,10 @@ impl Evenness {
         }
         let rims_at = |level: u8| self.more.iter().take(usize::from(level) + 1).sum::<i64>() as f64;
         let rims = rims_at(level);
-        let are_same = BETWEEN.iter().all(|part| {
+        let are_same = BETWEEN.iter().all(|(part, differ)| {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between two levels")]
             let between = (dark + contrast * part) as u8;
-            (rims_at(between) - rims).abs() <= RIMS_DIFFER * rims + FEW_RIMS
+            (rims_at(between) - rims).abs() <= differ * rims + FEW_RIMS
         });
         // The quarter of the paper that is nearest to the ink.
         let light_paper = light_pixels >= dark_pixels;
