@@ -56,7 +56,8 @@ pub fn in_webp(exif: &[u8]) -> Vec<u8> {
 /// Whether a picture is small enough to be tried many times a second, as far as its header can tell.
 pub fn is_small(bytes: &[u8]) -> bool {
     const MOST_PIXELS: u64 = 1 << 16;
-    let size = |(width, height): (u32, u32)| u64::from(width) * u64::from(height);
+    // Many rows without columns are many rows.
+    let size = |(width, height): (u32, u32)| u64::from(width.max(1)) * u64::from(height.max(1));
     // What is decoded whole is decoded when it is opened: its size must be known before.
     let whole: [&[u8]; 6] = [b"\xff\xd8", b"\x89PNG", b"P7", b"RIFF", b"BM", b"GIF8"];
     if whole.iter().any(|head| bytes.starts_with(head)) {
