@@ -179,7 +179,7 @@ fn traced(args: &CompareCommand, path: &Path, bytes: &[u8], bed: &TestBed) -> Re
         vectorizer(&bed.machine().config().vectorize, scale.mm_per_px()).map_err(|error| at(path, &error))?;
     let (traced, _) = vectorized(&vectorizer, bytes.to_vec(), 1).map_err(|error| at(path, &error))?;
     let errors = traced.errors.unwrap_or_default();
-    lost_ink(&vectorizer, &errors, traced.pen_px).map_err(|error| at(path, &error))?;
+    lost_ink(&vectorizer, &errors, traced.pen_px, traced.look.is_some()).map_err(|error| at(path, &error))?;
     let mut text = String::new();
     plotter_vector::hpgl(&traced.drawing, scale, &mut text).map_err(|error| error.to_string())?;
     Ok(text)

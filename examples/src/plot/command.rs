@@ -166,7 +166,8 @@ pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
         let missed = outcome.targets - outcome.reached;
         eprintln!("warning: {missed} of {} targets were not reached", outcome.targets);
     }
-    lost_ink(&vectorizer, &errors, traced.pen_px).map_err(|error| at(picture_path(args), &error))
+    lost_ink(&vectorizer, &errors, traced.pen_px, traced.look.is_some())
+        .map_err(|error| at(picture_path(args), &error))
 }
 
 /// What the machine is to do; the drawing is written on the way.

@@ -14,18 +14,27 @@ use std::io::Cursor;
 /// paper between, so the far edge of a line that was not drawn has an error of at least a width and a pixel.
 const WIDTHS: f64 = 1.0;
 
+/// The same in a photograph, or of pencil and chalk, where ink is ragged and lines run together in dots.
+const WIDTHS_IF_UNEVEN: f64 = 2.0;
+
 /// The width that is taken where no lines were found, only areas or dots, px.
 const USUAL_LINE_PX: u32 = 3;
 
 /// Says where ink was lost, if its farthest pixel lies far beyond what was promised of the vectorization;
-/// `line_px` is the width of the picture's lines. The published algorithm promises nothing.
+/// `line_px` is the width of the picture's lines, `is_uneven` says that no single level told its ink. The published algorithm promises nothing.
 ///
 /// # Errors
 ///
 /// How far, where, and what may help.
-pub fn lost_ink(vectorizer: &Vectorizer, errors: &SheetErrors, line_px: Option<u32>) -> Result<(), String> {
+pub fn lost_ink(
+    vectorizer: &Vectorizer,
+    errors: &SheetErrors,
+    line_px: Option<u32>,
+    is_uneven: bool,
+) -> Result<(), String> {
     let promised_px = vectorizer.ours.tolerance_px;
-    let most_px = promised_px + WIDTHS * f64::from(line_px.unwrap_or(USUAL_LINE_PX).max(1));
+    let widths = if is_uneven { WIDTHS_IF_UNEVEN } else { WIDTHS };
+    let most_px = promised_px + widths * f64::from(line_px.unwrap_or(USUAL_LINE_PX).max(1));
     match errors.worst {
         Some((Pixel { x, y }, error_px)) if vectorizer.algorithm == Algorithm::Ours && error_px > most_px => {
             Err(format!(
@@ -68,18 +77,20 @@ mod tests {
     #[test]
     fn ink_a_lines_width_beyond_the_promise_is_lost_and_said_with_its_place() {
         let within_half = Vectorizer { ours: Bounded { tolerance_px: 0.5 }, ..Vectorizer::default() };
-        assert_eq!(lost_ink(&within_half, &errors(3.5), Some(3)), Ok(()));
+        assert_eq!(lost_ink(&within_half, &errors(3.5), Some(3), false), Ok(()));
         // The far edge of a line that was not drawn beside one that was: a width and a pixel.
-        let said = lost_ink(&within_half, &errors(4.0), Some(3)).unwrap_err();
+        let said = lost_ink(&within_half, &errors(4.0), Some(3), false).unwrap_err();
+        assert_eq!(lost_ink(&within_half, &errors(4.0), Some(3), true), Ok(()));
+        assert!(lost_ink(&within_half, &errors(7.0), Some(3), true).is_err());
         for part in ["(12, 34) px", "4.0 px", "0.5 px were promised", "--overlay", "--max-line-px"] {
             assert!(said.contains(part), "{part}: {said}");
         }
-        assert_eq!(lost_ink(&within_half, &SheetErrors::default(), Some(3)), Ok(()));
+        assert_eq!(lost_ink(&within_half, &SheetErrors::default(), Some(3), false), Ok(()));
     }
 
     #[test]
     fn the_published_algorithm_promises_nothing() {
         let published = Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() };
-        assert_eq!(lost_ink(&published, &errors(50.0), Some(1)), Ok(()));
+        assert_eq!(lost_ink(&published, &errors(50.0), Some(1), false), Ok(()));
     }
 }

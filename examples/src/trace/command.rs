@@ -272,9 +272,8 @@ pub(super) fn trace(arguments: &TraceCommand, stopped: &mut bool) -> Result<(), 
     }
     // Everything is written: what was traced may still be of use.
     match &traced.errors {
-        Some(errors) => {
-            lost_ink(&settings.vectorizer, errors, traced.widest_px).map_err(|error| here(&error))
-        }
+        Some(errors) => lost_ink(&settings.vectorizer, errors, traced.widest_px, traced.is_uneven)
+            .map_err(|error| here(&error)),
         None => Ok(()),
     }
 }

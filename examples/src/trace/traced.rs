@@ -65,6 +65,8 @@ pub(super) struct Traced {
     pub(super) time: Duration,
     /// What the file says of itself.
     pub(super) notes: FileNotes,
+    /// Whether no single level told it.
+    pub(super) is_uneven: bool,
     /// How the ink was told from the paper, in words.
     pub(super) ink: Vec<(&'static str, String)>,
 }
@@ -146,6 +148,7 @@ pub(super) fn by_rows<R: Read + Seek>(
         removed: sheet.removed,
         palette: Palette::default(),
         pen_px: sheet.pen_px,
+        is_uneven: sheet.look.is_some(),
         ink: told_ink(sheet.look, sheet.split),
         widest_px: sheet.pen_px,
         picture,
@@ -242,6 +245,7 @@ pub(super) fn in_colour(
         picture,
         time,
         notes,
+        is_uneven: false,
         ink: Vec::new(),
         drawing,
     })

@@ -18,6 +18,11 @@ const LEAST_CONTRAST: f64 = 60.0;
 const BETWEEN: [(f64, f64); 8] =
     [(0.1, 0.08), (0.2, 0.05), (0.3, 0.05), (0.4, 0.05), (0.5, 0.05), (0.6, 0.05), (0.7, 0.05), (0.8, 0.05)];
 
+/// Of lines with so few ink pixels a pair of rims, which are thin, not all are as dark as the ink: only from here on,
+/// towards the paper, the rims count.
+const THIN_RUN_PX: f64 = 3.2;
+const PALE_SIDE: f64 = 0.5;
+
 /// And by so many rims in any case.
 const FEW_RIMS: f64 = 4.0;
 
@@ -46,6 +51,7 @@ pub(crate) struct Evenness {
     pixels: u64,
     /// How many more rims a level has than the one before.
     more: [i64; 256],
+    looked_at: u64,
     jumps: u64,
     /// Jumps with no change beside them, by their levels.
     lonely: [u64; 256],
@@ -55,7 +61,7 @@ impl Evenness {
     pub(crate) fn new(width: u32, height: u32) -> Self {
         let pixels = u64::from(width) * u64::from(height);
         let every = u32::try_from(pixels / LOOKED_AT).unwrap_or(u32::MAX).saturating_add(1);
-        Self { every, pixels, more: [0; 256], jumps: 0, lonely: [0; 256] }
+        Self { every, pixels, more: [0; 256], looked_at: 0, jumps: 0, lonely: [0; 256] }
     }
 
     /// Row `y` of the picture.
@@ -63,6 +69,7 @@ impl Evenness {
         if !y.is_multiple_of(self.every) {
             return;
         }
+        self.looked_at += levels.len() as u64;
         let mut add = |level: u8, n: i64| {
             if let Some(more) = self.more.get_mut(usize::from(level)) {
                 *more += n;
@@ -92,7 +99,7 @@ impl Evenness {
     #[expect(clippy::cast_precision_loss, reason = "a picture's pixels")]
     fn is_enlarged(&self, contrast: f64) -> bool {
         let lonely: u64 = self.lonely.iter().sum();
-        let partial: u64 = (0_u8..)
+        let partial: u64 = (0_u16..)
             .zip(self.lonely)
             .filter(|(jump, _)| f64::from(*jump) < WHOLE_CONTRAST * contrast)
             .map(|(_, n)| n)
@@ -118,13 +125,19 @@ impl Evenness {
         }
         let rims_at = |level: u8| self.more.iter().take(usize::from(level) + 1).sum::<i64>() as f64;
         let rims = rims_at(level);
+        let light_paper = light_pixels >= dark_pixels;
+        let ink_pixels = dark_pixels.min(light_pixels) as f64 * self.looked_at as f64 / self.pixels as f64;
+        let is_thin = ink_pixels < THIN_RUN_PX * rims / 2.0;
         let are_same = BETWEEN.iter().all(|(part, differ)| {
+            if is_thin && *part < PALE_SIDE {
+                return true;
+            }
+            let part = if light_paper { *part } else { 1.0 - part };
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between two levels")]
             let between = (dark + contrast * part) as u8;
             (rims_at(between) - rims).abs() <= differ * rims + FEW_RIMS
         });
         // The quarter of the paper that is nearest to the ink.
-        let light_paper = light_pixels >= dark_pixels;
         let (paper, pixels) = if light_paper { (light, light_pixels) } else { (dark, dark_pixels) };
         let mut outer = 0;
         let mut is_outer = |n: u64| {
@@ -193,7 +206,7 @@ mod tests {
             _ => 255,
         }));
         // The light falls off to a half, and ink with it.
-        let shadow = |x: u32| 255 - u8::try_from(x).unwrap() * 5 / 4;
+        let shadow = |x: u32| u8::try_from(255 - x * 5 / 4).unwrap();
         assert!(!is_even(|x, _| if x % 20 == 7 { shadow(x) / 2 } else { shadow(x) }));
         let noise = |x: u32, y: u32| u8::try_from((x * 37 + y * 101) % 97).unwrap();
         assert!(!is_even(|x, y| if x % 20 == 7 { 40 } else { 120 } + noise(x, y)));

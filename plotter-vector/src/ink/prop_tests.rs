@@ -37,7 +37,7 @@ fn threshold() -> impl Strategy<Value = Threshold> {
     ];
     let polarity = prop_oneof![Just(Polarity::Minority), Just(Polarity::DarkInk), Just(Polarity::LightInk)];
     (method, polarity, 0_u32..40, 0_u8..60).prop_map(|(method, polarity, window_px, min_contrast)| {
-        Threshold { polarity, method, window_px, min_contrast }
+        Threshold { polarity, method, window_px, min_contrast, keep_pale: false }
     })
 }
 

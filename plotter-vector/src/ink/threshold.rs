@@ -216,7 +216,7 @@ impl Threshold {
         if survey.is_uneven() {
             let (evened, settings) = self.evened(gray);
             let (ink, split) = settings.apply(&evened.gray);
-            return (ink, split.map(|split| Split { ink_is_dark: !evened.look.light_ink, ..split }));
+            return (ink, evened.look.split(split));
         }
         let Some(rows) = survey.finish() else {
             return (ink, None);

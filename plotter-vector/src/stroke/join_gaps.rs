@@ -172,12 +172,12 @@ mod tests {
     #[test]
     fn a_ring_with_a_gap_is_closed_and_one_of_two_pieces_is_one() {
         let ring: &[(f64, f64)] =
-            &[(5.0, 0.0), (20.0, 0.0), (20.0, 20.0), (0.0, 20.0), (0.0, 0.0), (2.0, 0.0)];
+            &[(5.0, 0.0), (20.0, 0.0), (20.0, 20.0), (-10.0, 20.0), (-10.0, 0.0), (2.0, 0.0)];
         let closed = join_gaps(drawing(&[ring]), 4.0);
         assert_eq!(closed.stroke(0).first(), closed.stroke(0).last());
         let halves: &[&[(f64, f64)]] = &[
             &[(5.0, 0.0), (20.0, 0.0), (20.0, 10.0)],
-            &[(20.0, 12.0), (20.0, 20.0), (0.0, 20.0), (0.0, 0.0), (2.0, 0.0)],
+            &[(20.0, 12.0), (20.0, 20.0), (-10.0, 20.0), (-10.0, 0.0), (2.0, 0.0)],
         ];
         let closed = join_gaps(drawing(halves), 4.0);
         assert_eq!(closed.strokes().len(), 1);

@@ -252,8 +252,9 @@ impl Vectorizer {
     pub fn vectorize(&self, gray: &Gray) -> Result<Vectorized, VectorizeError> {
         if self.threshold.is_uneven(gray) {
             let (evened, settings) = self.evened(gray);
-            let look = Some(evened.look);
-            return Ok(Vectorized { look, ..settings.vectorize(&evened.gray)? });
+            let found = settings.vectorize(&evened.gray)?;
+            let split = evened.look.split(found.split);
+            return Ok(Vectorized { look: Some(evened.look), split, ..found });
         }
         let (ink, split) = self.threshold.apply(gray);
         // Of two levels the ink says all: its rims are no more exact, and dirt that was taken out is no rim.

@@ -17,7 +17,7 @@ fn the_number_of_threads_changes_nothing() {
     };
     let levels = (0..width * height).map(|i| level(i) as u8).collect();
     let gray = Gray::new(width, height, levels).unwrap();
-    for method in [ThresholdMethod::Otsu, ThresholdMethod::Adaptive] {
+    for method in [ThresholdMethod::Auto, ThresholdMethod::Otsu, ThresholdMethod::Adaptive] {
         let threshold = Threshold { method, ..Threshold::default() };
         let mut results = [1, 2, 3].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -27,7 +27,8 @@ fn the_number_of_threads_changes_nothing() {
                 (ink, split, changed)
             })
         });
-        assert!(results[0].2.removed_px > 0);
+        // By itself dirt is left out before it is ink.
+        assert!(results[0].2.removed_px > 0 || method == ThresholdMethod::Auto);
         results.rotate_left(1);
         assert!(results.windows(2).all(|pair| pair[0] == pair[1]));
     }

@@ -70,7 +70,12 @@ const ADAPTIVE: Threshold = Threshold {
     method: ThresholdMethod::Adaptive,
     window_px: 32,
     min_contrast: 24,
+    keep_pale: false,
 };
+
+const OTSU: Threshold = Threshold { method: ThresholdMethod::Otsu, ..ADAPTIVE };
+
+const AUTO: Threshold = Threshold { method: ThresholdMethod::Auto, ..ADAPTIVE };
 
 /// Pixels of the strokes that are missing, and pixels of paper that are ink, in units of the strokes' pixels.
 /// A pixel that is more than a quarter and less than three quarters covered may be either.
@@ -86,11 +91,16 @@ fn wrong(ink: &Bitmap) -> (f64, f64) {
 }
 
 #[test]
-fn adaptive_finds_the_strokes_where_otsu_takes_the_shadow_for_ink() {
+fn adaptive_and_auto_find_the_strokes_where_otsu_takes_the_shadow_for_ink() {
     for share in [0.2, 0.3, 0.5] {
         let scan = uneven(share);
-        let (_, extra) = wrong(&Threshold::default().apply(&scan).0);
+        let (_, extra) = wrong(&OTSU.apply(&scan).0);
         assert!(extra > 0.5, "ink {share}: Otsu's extra ink is only {extra}");
+        let (missing, extra) = wrong(&AUTO.apply(&scan).0);
+        assert!(
+            missing <= 0.005 && extra <= 0.005,
+            "ink {share}: by itself missing {missing}, extra {extra}"
+        );
         let (missing, extra) = wrong(&ADAPTIVE.apply(&scan).0);
         assert!(missing <= 0.001 && extra <= 0.001, "ink {share}: missing {missing}, extra {extra}");
     }
@@ -118,7 +128,7 @@ fn scan_of_a_blueprint() -> Gray {
 
 #[test]
 fn paper_alone_is_an_empty_sheet() {
-    for method in [ThresholdMethod::Otsu, ThresholdMethod::Adaptive] {
+    for method in [ThresholdMethod::Auto, ThresholdMethod::Otsu, ThresholdMethod::Adaptive] {
         let threshold = Threshold { method, ..Threshold::default() };
         for level in [0.0, 128.0, 255.0] {
             assert_eq!(threshold.apply(&scan(|_, _| level)), (Bitmap::new(WIDTH, HEIGHT).unwrap(), None));
@@ -128,8 +138,10 @@ fn paper_alone_is_an_empty_sheet() {
         }
     }
     // Otsu's level splits the light; in tiles there is nothing to split.
-    let (ink, split) = ADAPTIVE.apply(&scan(|x, y| 240.0 * light(x, y) + 6.0 * noise(x, y)));
-    assert_eq!((ink.count(), split), (0, None));
+    for threshold in [ADAPTIVE, AUTO] {
+        let (ink, split) = threshold.apply(&scan(|x, y| 240.0 * light(x, y) + 6.0 * noise(x, y)));
+        assert_eq!((ink.count(), split), (0, None), "{}", threshold.method);
+    }
 }
 
 #[test]
@@ -137,7 +149,8 @@ fn any_shape_of_picture_is_thresholded() {
     for (width, height) in [(0, 0), (0, 5), (5, 0), (1, 1), (1, 300), (300, 1), (2, 2), (33, 47)] {
         let levels = (0..width * height).map(|i| if i % 7 == 3 { 20 } else { 230 }).collect();
         let gray = Gray::new(width, height, levels).unwrap();
-        for method in [ThresholdMethod::Otsu, ThresholdMethod::Adaptive, ThresholdMethod::Level(99)] {
+        let level = ThresholdMethod::Level(99);
+        for method in [ThresholdMethod::Auto, ThresholdMethod::Otsu, ThresholdMethod::Adaptive, level] {
             let (ink, _) = Threshold { method, ..Threshold::default() }.apply(&gray);
             let expected = (0..u64::from(width * height)).filter(|i| i % 7 == 3).count() as u64;
             assert_eq!((ink.count(), ink.width()), (expected, width), "{width} x {height}, {method}");

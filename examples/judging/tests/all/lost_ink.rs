@@ -16,6 +16,6 @@ fn no_picture_of_the_corpus_has_lost_ink() {
         let errors = traced.errors.unwrap();
         let name = picture.name;
         println!("{name:16} width {:?} px, greatest error {:.2} px", traced.pen_px, errors.report.max_px);
-        assert_eq!(lost_ink(&vectorizer, &errors, traced.pen_px), Ok(()), "{name}");
+        assert_eq!(lost_ink(&vectorizer, &errors, traced.pen_px, traced.look.is_some()), Ok(()), "{name}");
     }
 }

@@ -1,5 +1,6 @@
 //! [`Look`]: what was found of a picture that is no clean scan.
 
+use crate::ink::Split;
 use core::fmt;
 
 /// What was found of a picture whose ink one level does not tell from its paper: of a photograph, of faint or rough
@@ -35,6 +36,12 @@ pub struct Look {
 }
 
 impl Look {
+    /// The split of an evened picture as that of the picture itself; none without ink.
+    pub(crate) fn split(&self, split: Option<Split>) -> Option<Split> {
+        let found = split.filter(|split| split.ink_pixels > 0);
+        found.map(|split| Split { ink_is_dark: !self.light_ink, ..split })
+    }
+
     /// What was assumed, with its subject, in words.
     #[must_use]
     pub fn told(&self) -> Vec<(&'static str, String)> {

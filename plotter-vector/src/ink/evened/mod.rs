@@ -176,15 +176,17 @@ fn darkness(smooth: Plane, reach_px: usize) -> (Plane, Paper) {
     const STEPS_PX: f32 = 1.5;
     /// Paper is never darker than this, levels.
     const DARKEST_PAPER: f32 = 8.0;
+    /// Paper may be lighter than the closing says by so many levels, which its noise needs to be measured.
+    const LIGHTER: f32 = 16.0;
     let radius = reach_px.div_ceil(2);
-    let light = smooth.halved(mean).extreme(radius, false).extreme(radius, true).blurred(STEPS_PX);
+    let light = smooth.halved(mean).closed(radius).blurred(STEPS_PX);
     let mut darkness = smooth;
     darkness.in_rows(|y, row| {
         let mut paper = vec![0.0_f32; row.len()];
         light.doubled_row(y, &mut paper);
         for (value, paper) in row.iter_mut().zip(paper) {
             let share = 1.0 - f32::from(*value) / paper.max(DARKEST_PAPER * LEVEL);
-            *value = rounded(share * 255.0 * LEVEL);
+            *value = rounded((share * 255.0 + LIGHTER) * LEVEL);
         }
     });
     let paper = Paper::of(&darkness);

@@ -18,8 +18,9 @@ const ONE_SIGMA: f64 = 0.1587;
 /// Noise that is never less, levels: a picture is stored in whole ones.
 const LEAST_NOISE: f32 = 0.7;
 
-/// A tile may differ so much from most: what differs more is full of ink.
-const MOST_OFFSET: f32 = 3.0;
+/// A tile may be darker than most by so many levels, and its noise greater by so many times: what differs more is full
+/// of ink.
+const MOST_OFFSET: f32 = 8.0;
 const MOST_NOISE: f32 = 4.0;
 
 /// The darkness that bare paper seems to have, and the standard deviation of its noise, in levels of a plane.
@@ -39,7 +40,7 @@ impl Paper {
     /// Measures a plane of darkness: lines are the minority in most tiles.
     pub(super) fn of(darkness: &Plane) -> Self {
         Self::measured(darkness, |offsets| {
-            let most = MOST_OFFSET * median(offsets.iter().copied()) + 2.0 * LEVEL;
+            let most = median(offsets.iter().copied()) + MOST_OFFSET * LEVEL;
             offsets.iter().map(|offset| offset.min(most)).collect()
         })
     }

@@ -126,6 +126,27 @@ impl Plane {
         }
     }
 
+    /// The closing: the least of the greatest values in windows of `radius_px`. Beyond the edge stand the edge's
+    /// values, also for the greatest ones there: where the light falls off toward the edge it stays.
+    pub(super) fn closed(&self, radius_px: usize) -> Self {
+        let (width, height) = (self.width + 2 * radius_px, self.height + 2 * radius_px);
+        let mut wide = Self::new(width, height);
+        let inside = |at: usize, length: usize| at.saturating_sub(radius_px).min(length.saturating_sub(1));
+        wide.in_rows(|y, out| {
+            let row = self.row(inside(y, self.height));
+            for (x, out) in out.iter_mut().enumerate() {
+                *out = row.get(inside(x, self.width)).copied().unwrap_or(0);
+            }
+        });
+        let wide = wide.extreme(radius_px, false).extreme(radius_px, true);
+        let mut out = Self::new(self.width, self.height);
+        out.in_rows(|y, out| {
+            let row = wide.row(y + radius_px).iter().skip(radius_px);
+            out.iter_mut().zip(row).for_each(|(out, value)| *out = *value);
+        });
+        out
+    }
+
     /// The greatest value within `radius_px` columns and rows of each, or with `least` the least one.
     ///
     /// The windows double: the best of 2 n values is that of two windows of n.

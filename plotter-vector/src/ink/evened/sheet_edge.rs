@@ -44,7 +44,7 @@ impl SheetEdge {
             scale *= 2.0;
         }
         // Lines on the sheet are closed.
-        let coarse = coarse.extreme(2, false).extreme(2, true);
+        let coarse = coarse.closed(2);
         let (width, height) = (coarse.width, coarse.height);
         let mut counts = [0_u64; 256];
         for value in &coarse.values {

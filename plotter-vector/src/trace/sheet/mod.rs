@@ -222,9 +222,9 @@ impl Vectorizer {
             let gray = whole_of(source, &mut progress.part(0.2))?;
             let (evened, settings) = self.evened(&gray);
             drop(gray);
-            let mut rows = GrayRows::new(evened.gray);
+            let (look, mut rows) = (evened.look, GrayRows::new(evened.gray));
             let found = settings.traced_rows(&mut rows, with_errors, &mut progress.part(1.0))?;
-            return Ok(TracedSheet { look: Some(evened.look), ..found });
+            return Ok(TracedSheet { look: Some(look), split: look.split(found.split), ..found });
         }
         if survey.needs_more_than_a_level() {
             let threshold = Threshold { method: ThresholdMethod::Adaptive, ..self.threshold };
