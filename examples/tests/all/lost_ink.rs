@@ -54,6 +54,6 @@ fn no_picture_of_the_examples_has_lost_ink() {
         let (traced, _) = vectorized(&vectorizer, std::fs::read(data(name)).unwrap(), 1).unwrap();
         let errors = traced.errors.unwrap();
         println!("{name:16} width {:?} px, greatest error {:.2} px", traced.pen_px, errors.report.max_px);
-        assert_eq!(lost_ink(&vectorizer, &errors, traced.pen_px), Ok(()), "{name}");
+        assert_eq!(lost_ink(&vectorizer, &errors, traced.pen_px, traced.look.is_some()), Ok(()), "{name}");
     }
 }
