@@ -454,7 +454,10 @@ fn the_number_of_threads_changes_nothing() {
 fn bad_values_get_one_line_with_a_remedy() {
     let flag = data("flag.png");
     let said = [
-        (["--threshold", "300"], "--threshold: 300 is neither otsu, adaptive nor a level from 0 to 255"),
+        (
+            ["--threshold", "300"],
+            "--threshold: 300 is neither auto, otsu, adaptive nor a level from 0 to 255",
+        ),
         (["--pens", "0"], "--pens: 0 pens cannot be found: ask for 1 to 16, or auto"),
         (["--pens", "-3"], "--pens: -3 pens cannot be found: ask for 1 to 16, or auto"),
         (["--pens", "missing.toml"], "give 1 to 16, auto, or a palette's TOML file"),

@@ -452,7 +452,7 @@ static MACHINE: [Rule; 70] = [
     ),
     Rule { key: "vectorize.arcs", form: Form::Switch },
     Rule { key: "vectorize.curves", form: Form::Switch },
-    Rule { key: "vectorize.threshold", form: Form::ChoiceOrLevel(&["otsu", "adaptive"]) },
+    Rule { key: "vectorize.threshold", form: Form::ChoiceOrLevel(&["auto", "otsu", "adaptive"]) },
     Rule { key: "vectorize.pens", form: Form::CountOrToml(PENS) },
     Rule { key: "vectorize.order", form: Form::Choice(&["none", "fast", "best"]) },
     number(
