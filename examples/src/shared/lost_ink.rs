@@ -21,7 +21,8 @@ const WIDTHS_IF_UNEVEN: f64 = 2.0;
 const USUAL_LINE_PX: u32 = 3;
 
 /// Says where ink was lost, if its farthest pixel lies far beyond what was promised of the vectorization;
-/// `line_px` is the width of the picture's lines, `is_uneven` says that no single level told its ink. The published algorithm promises nothing.
+/// `line_px` is the width of the picture's lines, `is_uneven` says that no single level told its ink. The
+/// published algorithm promises nothing.
 ///
 /// # Errors
 ///

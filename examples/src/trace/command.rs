@@ -33,8 +33,8 @@ pub(super) const FLAG: &[u8] = include_bytes!("../../data/flag.png");
                   In a checkout of the project, `cargo run --release --example trace --` stands for `plotter trace`."
 )]
 pub struct TraceCommand {
-    /// PNG, JPEG, TIFF, WebP, BMP, GIF, PBM, PGM or PPM picture of lines, of any size but for --pens; - is the standard input
-    /// [default: the flag that comes with the examples]
+    /// PNG, JPEG, TIFF, WebP, BMP, GIF, PBM, PGM or PPM picture of lines, of any size but for --pens; - is the
+    /// standard input [default: the flag that comes with the examples]
     image: Option<PathBuf>,
     /// Vectorization
     #[arg(long, value_enum, default_value = "ours")]

@@ -41,7 +41,7 @@ pub(super) struct Unscaled {
     pens: Option<Pens>,
     threads: Option<rayon::ThreadPool>,
     pub(super) overlay: Option<PathBuf>,
-    gap_mm: f64,
+    gap_mm: Option<f64>,
     min_stroke_mm: f64,
     keep_pale: bool,
 }
@@ -51,7 +51,7 @@ impl Unscaled {
     pub(super) fn in_size(self, size: PictureSize) -> Result<Settings, String> {
         let Self { mut vectorizer, config, pens, threads, overlay, gap_mm, min_stroke_mm, keep_pale } = self;
         vectorizer.threshold.keep_pale = keep_pale;
-        vectorizer.gap_px = gap_mm / size.mm_per_px;
+        vectorizer.gap_px = gap_mm.map(|gap_mm| gap_mm / size.mm_per_px);
         vectorizer.min_stroke_px = min_stroke_mm / size.mm_per_px;
         if vectorizer.algorithm == Algorithm::Ours {
             vectorizer.areas = self::vectorizer(&config, size.mm_per_px)?.areas;
@@ -78,7 +78,7 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Unscaled, String> {
             ));
         }
     }
-    let (gap_mm, min_stroke_mm) = (arguments.gap.unwrap_or(0.0), arguments.min_stroke.unwrap_or(0.0));
+    let (gap_mm, min_stroke_mm) = (arguments.gap, arguments.min_stroke.unwrap_or(0.0));
     let keep_pale = arguments.ruling == Some(RulingChoice::Keep);
     if let Some(text) = &arguments.threshold {
         config.threshold = match text.parse::<ThresholdMethod>().map_err(|error| format!("--{error}"))? {

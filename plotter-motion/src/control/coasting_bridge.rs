@@ -58,9 +58,9 @@ impl CoastingBridge {
     /// dry friction holds it against their mean, but not against their peaks. Friction, and what the whole
     /// supply accelerates it by, are in counts/s^2.
     ///
-    /// The current of a short pulse rises to its peak and falls to nothing as straight lines. While it is above
-    /// the friction the shaft gains speed, under a push that is a triangle; then friction takes it again, and
-    /// the rest of the current holds half of the friction off.
+    /// The current of a short pulse rises to its peak and falls to nothing as straight lines. While it is
+    /// above the friction the shaft gains speed, under a push that is a triangle; then friction takes it
+    /// again, and the rest of the current holds half of the friction off.
     pub(super) fn creep(&self, duty: Duty, friction: f32, accel: f32) -> f32 {
         let (value, Circuit { rise, fall }) = (duty.value().abs(), self.circuit(0.0));
         // 1 - exp(-x) to 3 % for x up to 1, as short pulses have it

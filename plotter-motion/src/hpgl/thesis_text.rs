@@ -357,8 +357,8 @@ pub fn read(text: &[u8]) -> impl Iterator<Item = Result<Line, Error>> + Clone {
     })
 }
 
-/// The plot operations of a text, for a machine of so many counts a millimetre; lines that move nothing are left
-/// out.
+/// The plot operations of a text, for a machine of so many counts a millimetre; lines that move nothing are
+/// left out.
 ///
 /// ```
 /// # use plotter_motion::hpgl::thesis_text::plot_ops;

@@ -23,6 +23,7 @@ pub use palette::{PalettePlace, PaletteTomlError};
 pub(crate) use row_threshold::{RowThreshold, Survey};
 pub(crate) use speckle::context_rows;
 pub use speckle::{Despeckled, despeckle, smallest_mark_px};
+pub(crate) use threshold::told;
 pub use threshold::{Polarity, Split, Threshold, ThresholdMethod, ThresholdMethodError};
 
 #[cfg(test)]

@@ -25,8 +25,8 @@ pub enum Polarity {
     LightInk,
 }
 
-/// Where the level comes from. In text, and with the feature `serde`, `auto`, `otsu`, `adaptive`, or the number
-/// of a level.
+/// Where the level comes from. In text, and with the feature `serde`, `auto`, `otsu`, `adaptive`, or the
+/// number of a level.
 ///
 /// ```
 /// # use plotter_vector::ThresholdMethod;
@@ -163,9 +163,9 @@ pub struct Threshold {
 }
 
 impl Default for Threshold {
-    /// The method by itself; 24 levels of contrast, a hard pencil's faintest line, where a scanner's noise has 2
-    /// to 8. Tiles of 32 px: 1.4 mm at 600 dots per inch, wide enough for lines of 1 mm, for half of a tile
-    /// may be ink, and the tiles around serve where it is more.
+    /// The method by itself; 24 levels of contrast, a hard pencil's faintest line, where a scanner's noise
+    /// has 2 to 8. Tiles of 32 px: 1.4 mm at 600 dots per inch, wide enough for lines of 1 mm, for half of a
+    /// tile may be ink, and the tiles around serve where it is more.
     fn default() -> Self {
         Self {
             polarity: Polarity::Minority,
@@ -207,29 +207,33 @@ impl Threshold {
     /// ```
     #[must_use]
     pub fn apply(self, gray: &Gray) -> (Bitmap, Option<Split>) {
-        // A `Gray` has been checked against the same limits, so the empty picture below is never wrong.
-        let Ok(mut ink) = Bitmap::new(gray.width(), gray.height()) else {
-            return (Bitmap::empty(), None);
-        };
-        let mut survey = Survey::checked(self, gray.width(), gray.height());
-        survey.push_all(gray.pixels());
+        let survey = self.survey(gray);
         if survey.is_uneven() {
             let (evened, settings) = self.evened(gray);
             let (ink, split) = settings.apply(&evened.gray);
             return (ink, evened.look.split(split));
         }
-        let Some(rows) = survey.finish() else {
-            return (ink, None);
-        };
-        fill(&rows, gray, &mut ink);
-        let split = rows.split(ink.count());
-        (ink, Some(split))
+        told(survey, gray)
     }
 }
 
+/// The ink of a picture that has been surveyed.
+pub(crate) fn told(survey: Survey, gray: &Gray) -> (Bitmap, Option<Split>) {
+    // A `Gray` has been checked against the same limits, so the empty picture below is never wrong.
+    let Ok(mut ink) = Bitmap::new(gray.width(), gray.height()) else {
+        return (Bitmap::empty(), None);
+    };
+    let Some(rows) = survey.finish() else {
+        return (ink, None);
+    };
+    fill(&rows, gray, &mut ink);
+    let split = rows.split(ink.count());
+    (ink, Some(split))
+}
+
 impl Threshold {
-    /// A picture whose ink no single level tells from its paper, as if the ink were black and the paper white,
-    /// with what was found; none where [`ThresholdMethod::Auto`] takes a level, and for other methods.
+    /// A picture whose ink no single level tells from its paper, as if the ink were black and the paper
+    /// white, with what was found; none where [`ThresholdMethod::Auto`] takes a level, and for other methods.
     ///
     /// ```
     /// # use plotter_vector::{Gray, Threshold};
@@ -243,19 +247,17 @@ impl Threshold {
     /// ```
     #[must_use]
     pub fn look(self, gray: &Gray) -> Option<(Gray, Look)> {
-        self.is_uneven(gray).then(|| {
+        self.survey(gray).is_uneven().then(|| {
             let (Evened { gray, look }, _) = self.evened(gray);
             (gray, look)
         })
     }
 
-    /// Whether no single level tells the ink of a picture, and none is asked for.
-    pub(crate) fn is_uneven(self, gray: &Gray) -> bool {
-        self.method == ThresholdMethod::Auto && {
-            let mut survey = Survey::checked(self, gray.width(), gray.height());
-            survey.push_all(gray.pixels());
-            survey.is_uneven()
-        }
+    /// What must be known of all of a picture before its first pixel can be told.
+    pub(crate) fn survey(self, gray: &Gray) -> Survey {
+        let mut survey = Survey::checked(self, gray.width(), gray.height());
+        survey.push_all(gray.pixels());
+        survey
     }
 
     /// A picture that was found uneven as if its ink were black, and what tells the ink there.

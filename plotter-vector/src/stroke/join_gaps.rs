@@ -19,8 +19,8 @@ struct End {
     on: PxVec,
 }
 
-/// Joins strokes of a pen, by straight lines, where one ends no farther than `gap_px` from an end of another and both
-/// point at each other; the nearest first. A stroke that meets its own beginning so is closed.
+/// Joins strokes of a pen, by straight lines, where one ends no farther than `gap_px` from an end of another
+/// and both point at each other; the nearest first. A stroke that meets its own beginning so is closed.
 pub(crate) fn join_gaps(drawing: Drawing, gap_px: f64) -> Drawing {
     let mut ends: Vec<End> = Vec::new();
     for (index, stroke) in drawing.strokes().enumerate() {

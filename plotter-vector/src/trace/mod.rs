@@ -5,8 +5,10 @@ mod in_colour;
 pub(crate) mod pipeline;
 mod progress;
 mod sheet;
+mod vectorize_error;
 
 pub use in_colour::VectorizedColour;
-pub use pipeline::{Algorithm, MAX_INK_PIXELS, Mode, Prefer, VectorizeError, Vectorized, Vectorizer};
+pub use pipeline::{Algorithm, MAX_INK_PIXELS, Mode, Prefer, Vectorized, Vectorizer};
 pub use progress::{Cancelled, Progress};
 pub use sheet::{MAX_LINE_PIXELS, MAX_SHEET_STROKES, SheetError, SheetErrors, TracedSheet};
+pub use vectorize_error::VectorizeError;

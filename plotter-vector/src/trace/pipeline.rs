@@ -16,16 +16,15 @@ use crate::stroke::join_gaps::{join_gaps, without_short};
 use crate::stroke::simplify::SegmentKinds;
 use crate::trace::bare_ink::BareInk;
 use crate::{
-    areas::{AreaError, AreaPath, AreaStyle, Areas},
-    ink::{Despeckled, Evened, Look, PensError, Split, Threshold, despeckle, smallest_mark_px},
+    areas::{AreaPath, AreaStyle, Areas},
+    ink::{Despeckled, Evened, Look, Split, Threshold, despeckle, smallest_mark_px, told},
     order::{Lettering, Order},
     picture::{Bitmap, Figures, Gray, Pixel},
-    raster::{OrderedTracking, ThinningMethod, TooManyFigures},
+    raster::{OrderedTracking, ThinningMethod},
     report::{ErrorReport, ErrorTally},
     stroke::{Bounded, Curve, Drawing, DynamicThreshold, PxPoint, Simplify},
-    trace::{Cancelled, SheetErrors},
+    trace::{SheetErrors, VectorizeError},
 };
-use core::fmt;
 use std::collections::BTreeSet;
 
 /// Which vectorization.
@@ -118,9 +117,9 @@ pub struct Vectorizer {
     pub thinning: ThinningMethod,
     /// Ours: how areas are drawn.
     pub areas: Areas,
-    /// Ours: strokes that go on in each other beyond a gap of so much become one, px; 0 for none. In a
-    /// picture whose strokes have grain and gaps, 0 stands for some widths of its lines.
-    pub gap_px: f64,
+    /// Ours: strokes that go on in each other beyond a gap of so much become one, px; `None` for three widths
+    /// of the lines where strokes have grain and gaps, and nowhere else.
+    pub gap_px: Option<f64>,
     /// Ours: strokes shorter than this are left out, px; 0 for none.
     pub min_stroke_px: f64,
     /// Ours: the order of the strokes.
@@ -147,7 +146,7 @@ impl Default for Vectorizer {
             max_line_px: None,
             thinning: ThinningMethod::default(),
             areas: Areas { style: AreaStyle::Outline, pen_px: 1.0 },
-            gap_px: 0.0,
+            gap_px: None,
             min_stroke_px: 0.0,
             order: Order { lettering: Some(Lettering::default()), ..Order::default() },
             band_rows: 2048,
@@ -180,83 +179,20 @@ pub const MAX_INK_PIXELS: u64 = 1 << 25;
 /// Gaps in strokes with grain that are drawn over, in widths of the lines.
 const GAP_WIDTHS: f64 = 3.0;
 
-/// Why a picture cannot be vectorized.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum VectorizeError {
-    /// The promised error is no distance.
-    Tolerance {
-        /// What was asked, px.
-        tolerance_px: f64,
-    },
-    /// The picture has more ink than [`MAX_INK_PIXELS`]: it is no line drawing.
-    TooMuchInk {
-        /// Ink of the picture, px.
-        ink_pixels: u64,
-    },
-    /// The picture is noise.
-    TooManyFigures(TooManyFigures),
-    /// Both arcs and cubic curves are asked for.
-    ArcsAndCurves,
-    /// The style of the areas cannot be drawn.
-    Areas(AreaError),
-    /// There are no such pens.
-    Pens(PensError),
-    /// The one who asked for it stopped it.
-    Cancelled(Cancelled),
-}
-
-impl fmt::Display for VectorizeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Tolerance { tolerance_px } => {
-                write!(f, "tolerance: {tolerance_px} px is not a positive number; 0.5 is half a pixel")
-            }
-            Self::TooMuchInk { ink_pixels } => write!(
-                f,
-                "{ink_pixels} px of ink where a line drawing has at most {MAX_INK_PIXELS}: set the threshold level by \
-                 hand, scan with fewer dots per inch, or cut the picture into sheets"
-            ),
-            Self::TooManyFigures(error) => error.fmt(f),
-            Self::ArcsAndCurves => f.write_str("arcs and curves: a stroke has one of them; leave one out"),
-            Self::Areas(error) => error.fmt(f),
-            Self::Pens(error) => error.fmt(f),
-            Self::Cancelled(error) => error.fmt(f),
-        }
-    }
-}
-
-impl From<Cancelled> for VectorizeError {
-    fn from(error: Cancelled) -> Self {
-        Self::Cancelled(error)
-    }
-}
-
-impl core::error::Error for VectorizeError {
-    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
-        match self {
-            Self::TooManyFigures(error) => Some(error),
-            Self::Areas(error) => Some(error),
-            Self::Pens(error) => Some(error),
-            Self::Cancelled(error) => Some(error),
-            _ => None,
-        }
-    }
-}
-
 impl Vectorizer {
     /// Vectorizes a picture. An empty sheet (one level, no contrast, no pixels) gives an empty drawing.
     ///
     /// # Errors
     /// [`VectorizeError`].
     pub fn vectorize(&self, gray: &Gray) -> Result<Vectorized, VectorizeError> {
-        if self.threshold.is_uneven(gray) {
+        let survey = self.threshold.survey(gray);
+        if survey.is_uneven() {
             let (evened, settings) = self.evened(gray);
             let found = settings.vectorize(&evened.gray)?;
             let split = evened.look.split(found.split);
             return Ok(Vectorized { look: Some(evened.look), split, ..found });
         }
-        let (ink, split) = self.threshold.apply(gray);
+        let (ink, split) = told(survey, gray);
         // Of two levels the ink says all: its rims are no more exact, and dirt that was taken out is no rim.
         let grey = split.filter(|split| split.has_greys).map(|split| (gray, split.ink_is_dark));
         Ok(Vectorized { split, ..self.trace_ink(ink, grey)? })
@@ -267,11 +203,8 @@ impl Vectorizer {
         let (evened, threshold) = self.threshold.evened(gray);
         // The rims of what a camera or a pencil made are ragged: ink that is bare there is worth no stroke.
         let prefer = if self.prefer == Prefer::Both { Prefer::Strokes } else { self.prefer };
-        let gap_px = if evened.look.broken && self.gap_px == 0.0 {
-            GAP_WIDTHS * f64::from(evened.look.line_px)
-        } else {
-            self.gap_px
-        };
+        let of_grain = evened.look.broken.then(|| GAP_WIDTHS * f64::from(evened.look.line_px));
+        let gap_px = self.gap_px.or(of_grain);
         (evened, Self { threshold, prefer, gap_px, ..*self })
     }
 
@@ -350,8 +283,8 @@ impl Vectorizer {
         if self.algorithm == Algorithm::Published {
             return (drawing, errors);
         }
-        if self.gap_px > 0.0 {
-            drawing = join_gaps(drawing, self.gap_px);
+        if let Some(gap_px) = self.gap_px.filter(|gap_px| *gap_px > 0.0) {
+            drawing = join_gaps(drawing, gap_px);
         }
         let mut errors = errors;
         if self.min_stroke_px > 0.0 {

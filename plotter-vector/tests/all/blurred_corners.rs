@@ -5,7 +5,7 @@ use crate::off_lines;
 
 use off_lines::off_px;
 use plotter_vector::follow::{CameraSettings, Paper, SimulatedCamera};
-use plotter_vector::{PxPoint, Threshold, ThresholdMethod, Vectorizer};
+use plotter_vector::{PxPoint, Vectorizer};
 
 /// Half of the side of the window, px.
 const HALF_PX: f64 = 100.0;
@@ -13,9 +13,6 @@ const HALF_PX: f64 = 100.0;
 #[test]
 #[allow(clippy::unwrap_used, reason = "a failure shows")]
 fn three_lines_end_where_their_courses_meet() {
-    // One level: evened, such a picture is smoothed once more.
-    let threshold = Threshold { method: ThresholdMethod::Otsu, ..Threshold::default() };
-    let vectorizer = Vectorizer { threshold, ..Vectorizer::default() };
     for seed in 0..8_u8 {
         let turn = 0.01 + f64::from(seed) * core::f64::consts::FRAC_PI_4;
         let corner = PxPoint::new(100.0 + 0.37 * f64::from(seed), 100.0 - 0.23 * f64::from(seed));
@@ -33,7 +30,7 @@ fn three_lines_end_where_their_courses_meet() {
             ..CameraSettings::default()
         };
         let window = SimulatedCamera::new(&paper, settings).window(PxPoint::new(HALF_PX, HALF_PX));
-        let found = vectorizer.vectorize(&window).unwrap().drawing;
+        let found = Vectorizer::default().vectorize(&window).unwrap().drawing;
         let off_px = off_px(&lines, &found);
         assert!(off_px < 1.2, "{seed}: {off_px} px {found:?}");
     }

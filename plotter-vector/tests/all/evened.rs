@@ -1,4 +1,5 @@
-//! Drawings as people have them: faint, ruled, enlarged, broken, photographed on a table; found without being told.
+//! Drawings as people have them: faint, ruled, enlarged, broken, photographed on a table; found without being
+//! told.
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "levels are made to fit")]
 
 use plotter_vector::{
@@ -63,8 +64,8 @@ fn picture(level: impl Fn(u32, u32) -> f64) -> Gray {
         .unwrap()
 }
 
-/// Traces it, whole and by rows, which must be the same, and asks for all of the lines, for nothing else, and for
-/// about as many strokes as were drawn.
+/// Traces it, whole and by rows, which must be the same, and asks for all of the lines, for nothing else, and
+/// for about as many strokes as were drawn.
 fn assert_found(name: &str, gray: Gray) -> Vectorized {
     let found = Vectorizer::default().vectorize(&gray).unwrap();
     let by_rows =

@@ -90,15 +90,7 @@ const BOUNDS: [Bounds; 16] = [
     },
     // asked: 120 vertices, fewer than are possible
     Bounds { picture: "grey_aa", vertices: 140, mean_px: 0.1, greatest_px: 1.5, ..ANY },
-    // A speck of salt and pepper may be left as a stroke of its own.
-    Bounds {
-        picture: "noisy_scan",
-        strokes: 40,
-        mean_px: 0.17,
-        greatest_px: 22.0,
-        junctions: (0.5, 0.9),
-        ..ANY
-    },
+    Bounds { picture: "noisy_scan", strokes: 40, mean_px: 0.16, junctions: (0.5, 0.9), ..ANY },
     Bounds { picture: "two_colour", vertices: 165, mean_px: 0.12, junctions: (0.5, 0.9), ..ANY },
     Bounds {
         picture: "small_marks",

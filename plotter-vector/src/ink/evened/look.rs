@@ -3,8 +3,8 @@
 use crate::ink::Split;
 use core::fmt;
 
-/// What was found of a picture whose ink one level does not tell from its paper: of a photograph, of faint or rough
-/// lines, of dirty or ruled paper.
+/// What was found of a picture whose ink one level does not tell from its paper: of a photograph, of faint or
+/// rough lines, of dirty or ruled paper.
 ///
 /// ```
 /// # use plotter_vector::ink::Look;
@@ -31,7 +31,8 @@ pub struct Look {
     pub pale_levels: Option<f32>,
     /// Specks that were left out: too small, too pale or too short for strokes.
     pub left_out: usize,
-    /// The sheet's corners, px, from the upper left clockwise, where something beside it is seen, which was left out.
+    /// The sheet's corners, px, from the upper left clockwise, where something beside it is seen, which was
+    /// left out.
     pub sheet: Option<[(f32, f32); 4]>,
 }
 

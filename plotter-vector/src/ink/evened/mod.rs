@@ -1,4 +1,5 @@
-//! [`Evened`]: a picture in uneven light, faint, rough or on dirty paper, as if its ink were black and its paper white.
+//! [`Evened`]: a picture in uneven light, faint, rough or on dirty paper, as if its ink were black and its
+//! paper white.
 //!
 //! ```text
 //!   levels ─▶ smoothed ─▶ which side is ink ─▶ closing: the paper ─▶ darkness, a share of it
@@ -41,21 +42,22 @@ use sheet_edge::SheetEdge;
 /// The first look smooths so much, px: the noise of single pixels, and no line.
 const FIRST_SIGMA_PX: f32 = 1.0;
 
-/// The second one smooths by this part of the lines' width, within these bounds, px: rough rims become smooth, corners
-/// stay where they are.
+/// The second one smooths by this part of the lines' width, within these bounds, px: rough rims become
+/// smooth, corners stay where they are.
 const SIGMA_OF_WIDTH: f32 = 0.18;
 const SIGMA_PX: core::ops::RangeInclusive<f32> = 0.8..=4.0;
 
 /// Rough strokes are looked at as sharply as this, px, for windows along them smooth enough.
 const ROUGH_SIGMA_PX: f32 = 0.6;
 
-/// Windows of the closing reach so far, px: a part of the picture's shorter side at first, then some widths of the
-/// lines, and never less than twelve pixels.
+/// Windows of the closing reach so far, px: a part of the picture's shorter side at first, then some widths
+/// of the lines, and never less than twelve pixels.
 const FIRST_REACH: usize = 32;
 const REACH_WIDTHS: usize = 6;
 const LEAST_REACH_PX: usize = 12;
 
-/// Ink is darker than the paper by so many standard deviations of its noise, and a part of it is somewhere by so many.
+/// Ink is darker than the paper by so many standard deviations of its noise, and a part of it is somewhere by
+/// so many.
 const OUT_OF_NOISE: f32 = 5.0;
 const SURELY_OUT: f32 = 8.0;
 
@@ -65,8 +67,8 @@ const HALF: f32 = 0.5;
 /// The darkness of sure ink, as a part of the usual.
 const SURE_INK: f32 = 0.3;
 
-/// Strokes have gaps when they fall into so many times the parts that they are when blurred by half a width, and some
-/// parts more: the letters of a word run together, too.
+/// Strokes have gaps when they fall into so many times the parts that they are when blurred by half a width,
+/// and some parts more: the letters of a word run together, too.
 const BROKEN: f32 = 1.5;
 const FEW_PARTS: f32 = 20.0;
 const BLURRED_WIDTHS: f32 = 0.5;
@@ -74,8 +76,8 @@ const BLURRED_WIDTHS: f32 = 0.5;
 /// A part is a stroke, and no speck, from so much of a square of the lines' width on.
 const LEAST_SQUARES: f32 = 0.4;
 
-/// A part shorter than so many widths of the lines must be as dark as this part of the usual ink, a longer one as that:
-/// fibres and specks are short and pale.
+/// A part shorter than so many widths of the lines must be as dark as this part of the usual ink, a longer
+/// one as that: fibres and specks are short and pale.
 const SHORT_WIDTHS: f32 = 8.0;
 const DARK_IF_SHORT: f32 = 0.6;
 const DARK_IF_LONG: f32 = 0.3;
@@ -170,7 +172,8 @@ impl Evened {
     }
 }
 
-/// How much darker each place is than the paper there, as a share of 255 levels, and what is left of the paper.
+/// How much darker each place is than the paper there, as a share of 255 levels, and what is left of the
+/// paper.
 fn darkness(smooth: Plane, reach_px: usize) -> (Plane, Paper) {
     /// The closing's own steps are smoothed so much, of half as many pixels.
     const STEPS_PX: f32 = 1.5;

@@ -12,8 +12,8 @@ const ACROSS: f32 = 0.2;
 /// Where a window ends, in standard deviations.
 const REACH: f32 = 2.2;
 
-/// The mean darkness in a long narrow window, turned so that it is darkest there: along a line it bridges gaps of the
-/// grain, and goes over a line's edge and end no farther than it is narrow.
+/// The mean darkness in a long narrow window, turned so that it is darkest there: along a line it bridges
+/// gaps of the grain, and goes over a line's edge and end no farther than it is narrow.
 ///
 /// Asked only where something is darker than `least`, or close to it; what is elsewhere is paper.
 pub(super) fn along_lines(darkness: &Plane, width_px: f32, least: f32) -> Plane {

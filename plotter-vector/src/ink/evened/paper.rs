@@ -18,8 +18,8 @@ const ONE_SIGMA: f64 = 0.1587;
 /// Noise that is never less, levels: a picture is stored in whole ones.
 const LEAST_NOISE: f32 = 0.7;
 
-/// A tile may be darker than most by so many levels, and its noise greater by so many times: what differs more is full
-/// of ink.
+/// A tile may be darker than most by so many levels, and its noise greater by so many times: what differs
+/// more is full of ink.
 const MOST_OFFSET: f32 = 8.0;
 const MOST_NOISE: f32 = 4.0;
 

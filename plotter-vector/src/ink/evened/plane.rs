@@ -126,8 +126,8 @@ impl Plane {
         }
     }
 
-    /// The closing: the least of the greatest values in windows of `radius_px`. Beyond the edge stand the edge's
-    /// values, also for the greatest ones there: where the light falls off toward the edge it stays.
+    /// The closing: the least of the greatest values in windows of `radius_px`. Beyond the edge stand the
+    /// edge's values, also for the greatest ones there: where the light falls off toward the edge it stays.
     pub(super) fn closed(&self, radius_px: usize) -> Self {
         let (width, height) = (self.width + 2 * radius_px, self.height + 2 * radius_px);
         let mut wide = Self::new(width, height);

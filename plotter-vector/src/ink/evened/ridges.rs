@@ -4,17 +4,17 @@ use super::paper::Paper;
 use super::plane::{LEVEL, Plane};
 use crate::picture::histogram;
 
-/// A middle of a line stands out of the noise by so many standard deviations, and is darker than the paper by so many
-/// levels.
+/// A middle of a line stands out of the noise by so many standard deviations, and is darker than the paper by
+/// so many levels.
 const OUT_OF_NOISE: f32 = 6.0;
 const LEAST_LEVELS: u16 = 8 << 8;
 
 /// A middle is as dark as all places so far around, px.
 const AROUND_PX: usize = 2;
 
-/// Two kinds of ink: their means explain this part of all differences, the pale one is at most so dark beside the other,
-/// and there are so many places of the dark one. A pencil beside a pen is darker; what shines through the paper, its
-/// ruling and its specks are paler.
+/// Two kinds of ink: their means explain this part of all differences, the pale one is at most so dark beside
+/// the other, and there are so many places of the dark one. A pencil beside a pen is darker; what shines
+/// through the paper, its ruling and its specks are paler.
 const TOLD_APART: f64 = 0.75;
 const PALE: f64 = 0.35;
 const LEAST_PLACES: u64 = 50;

@@ -5,12 +5,13 @@ use super::plane::{LEVEL, Plane, mean};
 /// The sheet is looked for in a picture of about this many columns and rows.
 const COARSE_PX: usize = 256;
 
-/// The sheet covers at least this part of the picture, and something else at least that one: less is a scanner's rim.
+/// The sheet covers at least this part of the picture, and something else at least that one: less is a
+/// scanner's rim.
 const LEAST_SHEET: f32 = 0.2;
 const LEAST_REST: f32 = 0.04;
 
-/// How much of the region its four-sided outline holds, and how much of that is the region: a round patch of light
-/// fills no more than two thirds.
+/// How much of the region its four-sided outline holds, and how much of that is the region: a round patch of
+/// light fills no more than two thirds.
 const FILLED: core::ops::RangeInclusive<f32> = 0.93..=1.07;
 
 /// The table is darker than the sheet by this many levels, right beside its edge; a shadow falls off softly.

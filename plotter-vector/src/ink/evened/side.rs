@@ -12,8 +12,8 @@ const NO_EDGE: f64 = 0.995;
 /// Halfway between an edge's two sides is told from the levels so far around it, px.
 const BESIDE_PX: usize = 2;
 
-/// Whether the ink of a picture is light: on most of its steep edges the paper around, a tile's median, lies on
-/// the dark side of the edge.
+/// Whether the ink of a picture is light: on most of its steep edges the paper around, a tile's median, lies
+/// on the dark side of the edge.
 ///
 /// A line has paper on both sides, so the median around it is the paper's; the soft edges of shadows and of
 /// reflections are not steep, whatever their contrast.
