@@ -1,5 +1,6 @@
 //! [`Evenness`]: whether one level tells ink from paper all over a picture.
 
+use crate::ink::grain::Grain;
 use crate::picture::Histogram;
 use crate::picture::histogram::otsu;
 
@@ -59,17 +60,28 @@ pub(crate) struct Evenness {
     jumps: u64,
     /// Jumps with no change beside them, by their levels.
     lonely: [u64; 256],
+    grain: Grain,
 }
 
 impl Evenness {
     pub(crate) fn new(width: u32, height: u32) -> Self {
         let pixels = u64::from(width) * u64::from(height);
         let every = u32::try_from(pixels / LOOKED_AT).unwrap_or(u32::MAX).saturating_add(1);
-        Self { every, pixels, above: Vec::new(), more: [0; 256], looked_at: 0, jumps: 0, lonely: [0; 256] }
+        Self {
+            every,
+            pixels,
+            above: Vec::new(),
+            more: [0; 256],
+            looked_at: 0,
+            jumps: 0,
+            lonely: [0; 256],
+            grain: Grain::new(),
+        }
     }
 
     /// Row `y` of the picture.
     pub(crate) fn push(&mut self, y: u32, levels: &[u8]) {
+        self.grain.push(levels, y.wrapping_sub(Grain::BEHIND).is_multiple_of(self.every));
         let is_above = y.wrapping_add(1).is_multiple_of(self.every);
         if y.is_multiple_of(self.every) {
             self.look_at(levels);
@@ -139,7 +151,9 @@ impl Evenness {
         let rims_at = |level: u8| self.more.iter().take(usize::from(level) + 1).sum::<i64>() as f64;
         let rims = rims_at(level);
         let light_paper = light_pixels >= dark_pixels;
-        let ink_pixels = dark_pixels.min(light_pixels) as f64 * self.looked_at as f64 / self.pixels as f64;
+        let of_looked_at = self.looked_at as f64 / self.pixels as f64;
+        let ink_pixels = dark_pixels.min(light_pixels) as f64 * of_looked_at;
+        let paper_pixels = dark_pixels.max(light_pixels) as f64 * of_looked_at;
         let is_thin = ink_pixels < THIN_PX * rims / 2.0;
         let are_same = BETWEEN.iter().all(|(part, differ)| {
             if is_thin && *part < PALE_SIDE {
@@ -166,7 +180,10 @@ impl Evenness {
                 .find(|(_, n)| is_outer(*n))
         };
         let quarter = from.map_or(paper, |(at, _)| f64::from(at));
-        are_same && !self.is_enlarged(contrast) && (quarter - paper).abs() <= PAPER_SPREADS * contrast
+        are_same
+            && !self.is_enlarged(contrast)
+            && !self.grain.is_grainy(light_paper, contrast, ink_pixels, paper_pixels)
+            && (quarter - paper).abs() <= PAPER_SPREADS * contrast
     }
 }
 

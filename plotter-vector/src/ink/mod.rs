@@ -2,6 +2,7 @@
 
 pub(crate) mod evened;
 mod evenness;
+mod grain;
 pub(crate) mod hairlines;
 pub(crate) mod illumination;
 mod layers;
