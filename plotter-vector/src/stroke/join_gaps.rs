@@ -2,8 +2,13 @@
 
 use crate::stroke::{Curve, Drawing, PxPoint, PxVec};
 
-/// A stroke goes on in another when neither turns by more than so much to get there: cos 40°.
+/// A stroke goes on in another when neither turns by more than so much to get there: cos 40° over the widest
+/// gap, and the more the narrower it is, up to cos 75°.
 const STRAIGHT_ON: f64 = 0.766;
+const TURNED: f64 = 0.259;
+
+/// The direction of an end is that from as far along the stroke as this part of the widest gap.
+const ALONG: f64 = 0.5;
 
 /// Ends as near as this touch, px: the way from one to the other says nothing of a direction.
 const TOUCHING_PX: f64 = 1.5;
@@ -30,12 +35,14 @@ pub(crate) fn join_gaps(drawing: Drawing, gap_px: f64) -> Drawing {
             && first != last
         {
             let direction = |at: PxPoint, vertices: &mut dyn Iterator<Item = &PxPoint>| {
-                let mut before = at;
+                let (mut before, mut left_px) = (at, ALONG * gap_px);
                 for vertex in vertices {
-                    before = *vertex;
-                    if before.distance(at) >= gap_px {
+                    let step_px = vertex.distance(before);
+                    if step_px >= left_px {
+                        before = before + (*vertex - before) * (left_px / step_px.max(f64::MIN_POSITIVE));
                         break;
                     }
+                    (before, left_px) = (*vertex, left_px - step_px);
                 }
                 let way = at - before;
                 let length = way.length();
@@ -57,7 +64,8 @@ pub(crate) fn join_gaps(drawing: Drawing, gap_px: f64) -> Drawing {
             let point_at_each_other = if far_px < TOUCHING_PX {
                 -one.on.dot(other.on) >= STRAIGHT_ON
             } else {
-                one.on.dot(way) >= STRAIGHT_ON * far_px && -other.on.dot(way) >= STRAIGHT_ON * far_px
+                let least = TURNED + (STRAIGHT_ON - TURNED) * far_px / gap_px;
+                one.on.dot(way) >= least * far_px && -other.on.dot(way) >= least * far_px
             };
             if are_close && point_at_each_other {
                 pairs.push((far_px, one.number, other.number));

@@ -30,12 +30,13 @@ mod ridges;
 mod sheet_edge;
 mod side;
 
+use crate::ink::grain::Grain;
 use crate::ink::{Polarity, pen_width_px};
 use crate::picture::{Bitmap, Gray, Pixel};
 pub use look::Look;
 use paper::Paper;
 use parts::{Part, Parts};
-use plane::{LEVEL, Plane, WHITE, mean, rounded};
+use plane::{LEVEL, Plane, WHITE, mean, rounded, whole};
 use ridges::Ridges;
 use sheet_edge::SheetEdge;
 
@@ -46,6 +47,9 @@ const FIRST_SIGMA_PX: f32 = 1.0;
 /// smooth, corners stay where they are.
 const SIGMA_OF_WIDTH: f32 = 0.18;
 const SIGMA_PX: core::ops::RangeInclusive<f32> = 0.8..=4.0;
+
+/// What was smoothed is sharpened by taking away what is smoothed so many times more.
+const SHARPENED_BY: f32 = 1.5;
 
 /// Rough strokes are looked at as sharply as this, px, for windows along them smooth enough.
 const ROUGH_SIGMA_PX: f32 = 0.6;
@@ -123,8 +127,9 @@ impl Evened {
         look.pale_levels = ridges.pale.map(|pale| pale / LEVEL);
 
         let sure = Sure { noise: OUT_OF_NOISE, darkness: HALF * ridges.ink };
-        let pen_px = pen_width_px(&sure.ink(&first, &paper, 3)).unwrap_or(3);
-        drop(first);
+        let sure_ink = sure.ink(&first, &paper, 3);
+        let (pen_px, ink_pixels) = (pen_width_px(&sure_ink).unwrap_or(3), sure_ink.count());
+        drop((first, sure_ink));
         let mut width_px = px(pen_px);
         let reach = (REACH_WIDTHS * pen_px as usize).clamp(LEAST_REACH_PX, first_reach);
         let sigma_px = (SIGMA_OF_WIDTH * width_px).clamp(*SIGMA_PX.start(), *SIGMA_PX.end());
@@ -135,7 +140,8 @@ impl Evened {
             Parts::of(&ink, dark, paper).parts.iter().filter(|part| part.area_px >= 3).count()
         };
         let blurred = dark.blurred(BLURRED_WIDTHS * width_px);
-        look.broken = count(pieces(&dark, &paper)) > BROKEN * count(pieces(&blurred, &paper)) + FEW_PARTS;
+        look.broken = count(pieces(&dark, &paper)) > BROKEN * count(pieces(&blurred, &paper)) + FEW_PARTS
+            || is_grainy(gray, light_ink, ridges.ink / LEVEL, ink_pixels);
         drop(blurred);
         if look.broken {
             let (rough, rough_paper) = darkness(Plane::smoothed(gray, ROUGH_SIGMA_PX, light_ink), reach);
@@ -152,6 +158,8 @@ impl Evened {
                     _ => break,
                 }
             }
+        } else {
+            dark.sharpen(SHARPENED_BY * sigma_px);
         }
         look.line_px = width_px;
         let radius_px = width_px / 2.0 + sigma_px;
@@ -195,6 +203,19 @@ fn darkness(smooth: Plane, reach_px: usize) -> (Plane, Paper) {
     let paper = Paper::of(&darkness);
     paper.take_from(&mut darkness);
     (darkness, paper)
+}
+
+/// Whether the strokes have pits, as deep as half of the ink is dark where the light is the picture's mean.
+fn is_grainy(gray: &Gray, ink_is_light: bool, ink_levels: f32, ink_pixels: u64) -> bool {
+    let pixels = gray.pixels().len() as u64;
+    let all: u64 = gray.pixels().iter().map(|level| u64::from(*level)).sum();
+    #[expect(clippy::cast_precision_loss, reason = "a picture's pixels")]
+    let (mean, ink, paper) =
+        (all as f64 / pixels.max(1) as f64, ink_pixels as f64, pixels.saturating_sub(ink_pixels) as f64);
+    let light = if ink_is_light { 255.0 - mean } else { mean } / 255.0;
+    let mut grain = Grain::new();
+    gray.rows().for_each(|row| grain.push(row, true));
+    grain.is_grainy(!ink_is_light, f64::from(ink_levels) * light, ink, paper)
 }
 
 /// What is ink for sure.
@@ -314,11 +335,6 @@ fn leave_out(found: &Parts, kept: &[bool], ink: &mut Bitmap, levels: &mut [u8]) 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the levels")]
 fn to_level(level: f32) -> u8 {
     (level + 0.5).clamp(0.0, 255.0) as u8
-}
-
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some pixels")]
-fn whole(px: f32) -> usize {
-    px.max(0.0) as usize
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a width of some pixels")]

@@ -74,6 +74,17 @@ impl Plane {
         across.smoothed_down(&kernel)
     }
 
+    /// Each value and, once more, what it has more than a Gaussian of `sigma_px` around it: what smoothing has
+    /// widened is narrow again.
+    pub(super) fn sharpen(&mut self, sigma_px: f32) {
+        let soft = self.blurred(sigma_px);
+        self.in_rows(|y, row| {
+            for (value, soft) in row.iter_mut().zip(soft.row(y)) {
+                *value = rounded(2.0 * f32::from(*value) - f32::from(*soft));
+            }
+        });
+    }
+
     fn smoothed_down(&self, kernel: &[f32]) -> Self {
         let mut out = Self::new(self.width, self.height);
         let reach = kernel.len() / 2;
@@ -232,6 +243,12 @@ fn kernel(sigma_px: f32) -> Vec<f32> {
 )]
 pub(super) fn rounded(value: f32) -> u16 {
     (value + 0.5).clamp(0.0, 65_535.0) as u16
+}
+
+/// How many whole pixels a length has.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some pixels")]
+pub(super) fn whole(px: f32) -> usize {
+    px.max(0.0) as usize
 }
 
 /// The mean of two values.
