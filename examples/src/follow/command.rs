@@ -60,7 +60,8 @@ pub struct FollowCommand {
     /// The thinnest line, px, which the published follower must be told
     #[arg(long, value_name = "PX", default_value = "4", value_parser = clap::value_parser!(u32).range(1..=100))]
     pub(super) thinnest: u32,
-    /// Most windows [default: 2000000, for the published follower 400]
+    /// Most windows [default: eight times what the picture's lines need, with --from 2000000, for the published
+    /// follower 400]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(super) windows: Option<u64>,
     /// Size of a camera's pixel on the paper, mm [default: as the picture's file says, if a scanner may have

@@ -1,7 +1,7 @@
 //! Window by window, to the end.
 
 use super::command::{FollowCommand, PUBLISHED_WINDOWS};
-use super::ended::Ended;
+use super::ended::{Ended, Over};
 use super::files::write_files;
 use super::follower::{Eyes, Follower};
 use super::sheet::{MM_PER_PX, Sheet, sheet};
@@ -34,6 +34,11 @@ pub(super) fn follow(arguments: &FollowCommand) -> Result<(), String> {
     } = course;
     let map = if let Follower::Ours(ours) = &follower { Some(ours.report()) } else { None };
     let reached_none = map.as_ref().is_some_and(|map| map.followed_px == 0.0);
+    let over = match &sheet {
+        None => Over::Unknown,
+        Some(sheet) if sheet.truth.is_empty() => Over::Nothing,
+        Some(_) => Over::Lines,
+    };
     let end = if end == Ended::Said(End::Complete) && reached_none { Ended::OutOfReach } else { end };
     if let Some(file) = moves_file {
         file.finish()?;
@@ -45,7 +50,7 @@ pub(super) fn follow(arguments: &FollowCommand) -> Result<(), String> {
         lost,
         lifts: table.strokes().len().saturating_sub(1),
         finished: end == Ended::Said(End::Complete),
-        said: end.told(windows),
+        said: end.told(windows, over),
         judged: sheet
             .as_ref()
             .filter(|sheet| !sheet.truth.is_empty())
@@ -115,7 +120,12 @@ impl<'a> Course<'a> {
             arguments,
             table: SimulatedTable::new(machine.at(), error),
             corrected_px: correction.as_ref().map(Correction::size_px),
-            follower: Follower::new(arguments, machine.area(), correction),
+            follower: Follower::new(
+                arguments,
+                machine.area(),
+                correction,
+                sheet.map(|sheet| sheet.most_windows(camera.width_px)),
+            ),
             machine,
             eyes,
             moves_file,

@@ -24,11 +24,17 @@ pub(super) enum Follower {
 }
 
 impl Follower {
-    pub(super) fn new(arguments: &FollowCommand, area: [PxPoint; 2], correction: Option<Correction>) -> Self {
+    /// As asked; `most_windows` is the most that the drawing can need, where it is known.
+    pub(super) fn new(
+        arguments: &FollowCommand,
+        area: [PxPoint; 2],
+        correction: Option<Correction>,
+        most_windows: Option<u64>,
+    ) -> Self {
         if arguments.method == Method::Ours {
             return Self::Ours(Box::new(MappingFollower::new(MappingSettings {
                 area: Some(area),
-                max_windows: arguments.windows.unwrap_or(WINDOWS),
+                max_windows: arguments.windows.unwrap_or(most_windows.unwrap_or(WINDOWS).min(WINDOWS)),
                 correction,
                 ..MappingSettings::default()
             })));

@@ -1,6 +1,7 @@
 //! [`FollowOutcome`]: the figures of a line follower's run, to be read and as JSON.
 
 use crate::machine::SteppedFigures;
+use crate::shared::assumed;
 use plotter_vector::PxPoint;
 use plotter_vector::follow::{FollowReport, Judged};
 use std::fmt::Write as _;
@@ -120,7 +121,7 @@ impl FollowOutcome<'_> {
             "motion_s": self.motion.motion_s,
             "steps": self.motion.steps,
             "map": self.map,
-            "assumed": self.told.iter().map(|(name, text)| format!("{name}: {text}")).collect::<Vec<_>>(),
+            "assumed": assumed(&self.told),
             "path_points": strokes.concat(),
             "strokes": strokes,
         });

@@ -1,8 +1,10 @@
 //! What lies under the camera, where that is known.
 
 use super::command::FollowCommand;
-use crate::shared::{SizeOptions, UsualSize, at, read_file, told_notes};
-use plotter_vector::{FileRows, Gray, PxPoint, Vectorizer, follow::Paper, stroke::Bounded};
+use crate::shared::{SizeOptions, UsualSize, at, doubted, read_file, told_ink, told_notes};
+use plotter_vector::{
+    FileRows, Gray, PxPoint, Vectorizer, follow::Paper, picture::GrayError, stroke::Bounded,
+};
 use std::io::Cursor;
 
 /// Farther than this the true lines are not from the middle of the picture's lines, px: less than what the
@@ -42,6 +44,25 @@ pub(super) struct Sheet {
     pub(super) told: Vec<(&'static str, String)>,
 }
 
+impl Sheet {
+    /// The most windows that these lines can need, with such windows: of a clean drawing there is one to two
+    /// pixels of a line, and one to half a window of the way between lines and of the search for more. Eight
+    /// times as many are allowed, so that a follower that goes in circles ends.
+    pub(super) fn most_windows(&self, window_px: u32) -> u64 {
+        const TIMES: f64 = 8.0;
+        const BEGINS: f64 = 1000.0;
+        let length = |line: &Vec<PxPoint>| -> f64 {
+            line.windows(2).filter_map(|pair| Some(pair.first()?.distance(*pair.get(1)?))).sum()
+        };
+        let half_px = 0.5 * f64::from(window_px.max(2));
+        let lines = self.truth.iter().map(|line| 0.5 * length(line) + 4.0).sum::<f64>();
+        let search = f64::from(self.picture.width()) * f64::from(self.picture.height()) / (half_px * half_px);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of windows")]
+        let most = (BEGINS + TIMES * (lines + search)) as u64;
+        most
+    }
+}
+
 /// Size of a pixel where nothing says it, mm.
 pub(super) const MM_PER_PX: f64 = 0.1;
 
@@ -62,6 +83,25 @@ pub(super) fn sheet(arguments: &FollowCommand, name: &str) -> Result<Sheet, Stri
     };
     let vectorizer = Vectorizer { ours: Bounded { tolerance_px: TRUTH_PX }, ..Vectorizer::default() };
     let traced = vectorizer.vectorize(&picture).map_err(|error| format!("{name}: {error}"))?;
+    doubted(traced.doubt, "`plotter trace --ink F.png` shows what was taken for ink")
+        .map_err(|error| format!("{name}: {error}"))?;
+    told.extend(told_ink(traced.look, traced.split));
+    let is_light = traced.split.is_some_and(|split| !split.ink_is_dark);
+    if traced.look.is_some() {
+        told.push(("seen", "as black ink on white paper, evened as the ink was told".into()));
+    } else if is_light {
+        told.push(("seen", "with dark and light exchanged: the camera looks for dark lines".into()));
+    }
+    let picture = match vectorizer.threshold.look(&picture).filter(|_| traced.look.is_some()) {
+        Some((evened, _)) => evened,
+        None if is_light => negative(&picture).map_err(|error| format!("{name}: {error}"))?,
+        None => picture,
+    };
     let truth = traced.drawing.chords(0.05).strokes().map(<[PxPoint]>::to_vec).collect();
     Ok(Sheet { picture, truth, mm_per_px, told })
+}
+
+/// A picture with dark and light exchanged.
+fn negative(picture: &Gray) -> Result<Gray, GrayError> {
+    Gray::new(picture.width(), picture.height(), picture.pixels().iter().map(|level| !level).collect())
 }

@@ -73,7 +73,7 @@ pub(super) fn draw(args: &MaxErrorCommand) -> Result<(), String> {
     });
     bar.finish();
     let (plan, path) = drawn.map_err(|refusal: Refusal| {
-        report_refusal(args, &machine, &refusal);
+        report_refusal(args, &machine, &scan, &refusal);
         refusal.to_string()
     })?;
     let report = Report::new(args, &machine, &scan, plan, &path);

@@ -4,7 +4,7 @@ use super::command::MaxErrorCommand;
 use super::plan::{Plan, Refusal, SAFETY};
 use super::scan::Scan;
 use crate::max_error::{FollowedPath, TruePath};
-use crate::shared::write_file;
+use crate::shared::{assumed, write_file};
 use plotter_motion::{
     Machine,
     budget::{Budget, BudgetError, BudgetPart},
@@ -87,7 +87,7 @@ impl<'a> Report<'a> {
         json!({
             "machine": self.name,
             "asked_mm": self.args.max_error_mm,
-            "assumed": self.told.iter().map(|(name, text)| format!("{name}: {text}")).collect::<Vec<_>>(),
+            "assumed": assumed(&self.told),
             "promised_mm": budget.promised_mm(),
             "measured_mm": self.measured_mm(),
             "parts": {
@@ -152,11 +152,12 @@ impl<'a> Report<'a> {
 }
 
 /// A refusal as JSON, where one was asked for; what cannot be written is no second error.
-pub(super) fn report_refusal(args: &MaxErrorCommand, machine: &Machine, refusal: &Refusal) {
+pub(super) fn report_refusal(args: &MaxErrorCommand, machine: &Machine, scan: &Scan, refusal: &Refusal) {
     let Some(file) = &args.report else { return };
     let mut report = json!({
         "machine": machine.config().name.to_string(),
         "asked_mm": args.max_error_mm,
+        "assumed": assumed(&scan.told),
         "refused": refusal.to_string(),
     });
     if let (Refusal::Budget(BudgetError::TooSmall { limiting, smallest_mm, .. }), Some(keys)) =

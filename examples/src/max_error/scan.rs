@@ -1,7 +1,7 @@
 //! The scan, where it lies on the sheet, and its vectorizations.
 
 use super::command::MaxErrorCommand;
-use crate::shared::{at, fit_picture, read_file, told_notes, vectorizer};
+use crate::shared::{IN_MACHINE_FILE, at, doubted, fit_picture, read_file, told_ink, told_notes, vectorizer};
 use plotter_motion::{Machine, Point, config::VectorizeConfig};
 use plotter_vector::{
     Bitmap, Drawing, FileRows, Gray, PxPoint, Scale, Vectorized,
@@ -51,8 +51,10 @@ impl Scan {
         let (ink, (all_ink, _)) = (settings.ink(&picture), settings.threshold.apply(&picture));
         let (reference, dirt) = (Drawing::default(), Despeckled::default());
         let mut scan = Self { picture, ink, all_ink, dirt, scale, told, vectorize, reference };
-        let Vectorized { drawing, removed, .. } =
+        let Vectorized { drawing, removed, look, split, doubt, .. } =
             scan.traced(REFERENCE_PX).map_err(|error| at(path, &error))?;
+        doubted(doubt, IN_MACHINE_FILE).map_err(|error| at(path, &error))?;
+        scan.told.extend(told_ink(look, split));
         (scan.reference, scan.dirt) = (drawing, removed);
         if scan.ink.count() == 0 {
             return Err(at(path, &"there is no ink on it"));

@@ -4,8 +4,8 @@ use super::figures::Summary;
 use super::pictures::Pictures;
 use super::recording::{record, replay};
 use crate::shared::{
-    SizeOptions, Telling, at, fit_picture, html_page, lost_ink, read_file, run, told_notes, vectorized,
-    vectorizer, write_file,
+    IN_MACHINE_FILE, SizeOptions, Telling, at, doubted, fit_picture, html_page, lost_ink, read_file, run,
+    told_ink, told_notes, vectorized, vectorizer, write_file,
 };
 use clap::{Parser, ValueEnum};
 use plotter_motion::{
@@ -259,8 +259,10 @@ fn trace(args: &PlotCommand, machine: &Machine) -> Result<Plan, String> {
         AlgorithmArg::Ours => vectorizer(&machine.config().vectorize, scale.mm_per_px())?,
     };
     let (traced, notes) = vectorized(&vectorizer, bytes, args.page).map_err(|error| at(path, &error))?;
+    doubted(traced.doubt, IN_MACHINE_FILE).map_err(|error| at(path, &error))?;
     let mut told = vec![("size", size)];
     told.extend(told_notes(&notes));
+    told.extend(told_ink(traced.look, traced.split));
     Ok(Plan { vectorizer, traced, scale, told })
 }
 

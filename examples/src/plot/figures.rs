@@ -1,6 +1,7 @@
 //! All figures of a plot, as JSON and as a table.
 
 use crate::machine::PlotOutcome;
+use crate::shared::assumed;
 use plotter_replay::compare::ContourError;
 use plotter_vector::{Drawing, ErrorReport, ink::Despeckled, report::Beyond};
 use serde_json::json;
@@ -39,7 +40,7 @@ impl Summary<'_> {
             "anomalies": self.anomalies,
             "simulated_s": self.outcome.duration.as_secs_f64(),
             "wall_s": self.wall_s,
-            "assumed": self.told.iter().map(|(name, text)| format!("{name}: {text}")).collect::<Vec<_>>(),
+            "assumed": assumed(&self.told),
         });
         format!("{report:#}\n")
     }

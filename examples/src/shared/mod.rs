@@ -2,6 +2,7 @@
 //! files, pages with pictures, how pictures are traced.
 
 mod command;
+mod doubted;
 mod exit_status;
 mod files;
 mod fit_drawing;
@@ -10,10 +11,12 @@ mod pen_colours;
 mod picture_size;
 mod report;
 mod telling;
+mod told_ink;
 mod vectorize_settings;
 mod work_shown;
 
 pub use command::{at, print, run};
+pub use doubted::{IN_MACHINE_FILE, doubted};
 pub use exit_status::ExitStatus;
 pub use files::{is_standard, read_file, read_input, write_file, write_output};
 pub use fit_drawing::{fit_drawing, fit_picture};
@@ -23,5 +26,6 @@ pub use picture_size::{PictureSize, SizeOptions, UsualSize, told_notes};
 pub(crate) use report::escaped;
 pub use report::{Figure, html_page};
 pub use telling::Telling;
+pub use told_ink::{assumed, told_ink};
 pub use vectorize_settings::vectorizer;
 pub use work_shown::WorkShown;

@@ -5,9 +5,12 @@ use super::figures::{Report, table};
 use super::files::{check_size, prints_file, write_files};
 use super::settings::settings;
 use super::traced::{Input, by_rows, in_colour};
-use crate::shared::{ExitStatus, SizeOptions, Telling, UsualSize, is_standard, lost_ink, run, write_output};
+use crate::shared::{
+    ExitStatus, SizeOptions, Telling, UsualSize, doubted, is_standard, lost_ink, run, write_output,
+};
 use crate::trace::{Interrupt, Overlay, overlay_png};
 use clap::{Parser, ValueEnum};
+use plotter_vector::trace::Doubt;
 use std::fs::File;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -15,6 +18,10 @@ use std::process::ExitCode;
 
 /// Size of a pixel where neither the file nor an option says it, mm.
 const MM_PER_PX: f64 = 0.1;
+
+/// What helps where a drawing is doubted.
+const REMEDY: &str = "--ink F.png shows what was taken for ink; another way to tell it (--threshold otsu, or a level as --threshold \
+                      100) or --min-stroke MM may leave the noise out, and --min-stroke 0 keeps every stroke";
 
 /// The picture that is traced when none is given.
 pub(super) const FLAG: &[u8] = include_bytes!("../../data/flag.png");
@@ -69,7 +76,8 @@ pub struct TraceCommand {
     /// none; of pencil and chalk three widths of the lines]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub(super) gap: Option<f64>,
-    /// Leaves out strokes that are shorter, mm on the sheet (ours only)
+    /// Leaves out strokes that are shorter, mm on the sheet (ours only); 0 says that thousands of dots are
+    /// meant, which are doubted otherwise
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub(super) min_stroke: Option<f64>,
     /// Pens told apart by colour: how many, auto, or a palette's TOML file (ours only) [default: 1, by grey
@@ -271,6 +279,8 @@ pub(super) fn trace(arguments: &TraceCommand, stopped: &mut bool) -> Result<(), 
         arguments.telling.tell(&table, json)?;
     }
     // Everything is written: what was traced may still be of use.
+    let is_meant = arguments.min_stroke.is_some() && !matches!(traced.doubt, Some(Doubt::Rough { .. }));
+    doubted(traced.doubt.filter(|_| !is_meant), REMEDY).map_err(|error| here(&error))?;
     match &traced.errors {
         Some(errors) => lost_ink(&settings.vectorizer, errors, traced.widest_px, traced.is_uneven)
             .map_err(|error| here(&error)),

@@ -2,7 +2,7 @@
 
 use super::settings::Settings;
 use super::traced::Traced;
-use crate::shared::{PictureSize, told_notes};
+use crate::shared::{PictureSize, assumed, told_notes};
 use plotter_vector::{
     Algorithm, Drawing, ErrorReport,
     picture::{FileNotes, Ground},
@@ -60,7 +60,7 @@ impl<'a> Report<'a> {
         told.extend(traced.ink.iter().cloned());
         Self {
             picture: PictureReport::new(&traced.notes, &settings.size),
-            assumed: told.iter().map(|(name, text)| format!("{name}: {text}")).collect(),
+            assumed: assumed(&told),
             told,
             mode: ours.then_some(settings.vectorizer.mode),
             pens: traced.palette.pens().iter().map(|pen| pen_report(pen, drawing)).collect(),

@@ -2,13 +2,13 @@
 
 use super::command::{FLAG, TraceCommand};
 use super::settings::Settings;
-use crate::shared::{WorkShown, is_standard, read_file, read_input};
+use crate::shared::{WorkShown, is_standard, read_file, read_input, told_ink};
 use crate::trace::{Interrupt, overlay_step};
 use plotter_vector::{
     Colour, DecodeError, Drawing, FileRows, Gray, Palette, Pixel, Progress,
-    ink::{Despeckled, Look, Pens, Split, pen_width_px},
+    ink::{Despeckled, Pens, pen_width_px},
     picture::{FileNotes, Row, RowSource as _, decode_page_in_colour},
-    trace::SheetErrors,
+    trace::{Doubt, SheetErrors},
 };
 use std::borrow::Cow;
 use std::fs::File;
@@ -65,6 +65,8 @@ pub(super) struct Traced {
     pub(super) time: Duration,
     /// What the file says of itself.
     pub(super) notes: FileNotes,
+    /// Why it may be no drawing.
+    pub(super) doubt: Option<Doubt>,
     /// Whether no single level told it.
     pub(super) is_uneven: bool,
     /// How the ink was told from the paper, in words.
@@ -146,6 +148,7 @@ pub(super) fn by_rows<R: Read + Seek>(
         drawing: sheet.drawing,
         errors: sheet.errors,
         removed: sheet.removed,
+        doubt: sheet.doubt,
         palette: Palette::default(),
         pen_px: sheet.pen_px,
         is_uneven: sheet.look.is_some(),
@@ -155,15 +158,6 @@ pub(super) fn by_rows<R: Read + Seek>(
         time,
         notes: scan.notes().clone(),
     })
-}
-
-/// How ink was told from paper: as was found of an uneven picture, or by one level.
-fn told_ink(look: Option<Look>, split: Option<Split>) -> Vec<(&'static str, String)> {
-    let by_level = |split: Split| {
-        let (side, way) = if split.ink_is_dark { ("dark", "up to") } else { ("light", "above") };
-        vec![("ink", format!("{side}: levels {way} {}", split.level))]
-    };
-    look.map(|look| look.told()).or(split.map(by_level)).unwrap_or_default()
 }
 
 fn go_on(interrupt: Interrupt) -> ControlFlow<()> {
@@ -235,10 +229,11 @@ pub(super) fn in_colour(
     let errors = (!arguments.no_errors).then_some(errors);
     let picture = settings.overlay.is_some().then_some(Picture::Colour(colour));
     let widest_px = found.inks.iter().filter_map(pen_width_px).max();
-    let removed = found.traced.removed;
+    let (removed, doubt) = (found.traced.removed, found.traced.doubt);
     Ok(Traced {
         errors,
         removed,
+        doubt,
         palette: found.palette,
         pen_px: None,
         widest_px,

@@ -36,6 +36,7 @@ mod real_files;
 mod rooms;
 mod round_trip;
 mod stepper_command;
+mod told_commands;
 mod trace_command;
 mod trace_compared;
 mod tune_command;

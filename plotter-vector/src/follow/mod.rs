@@ -149,7 +149,7 @@ impl fmt::Display for Lost {
         f.write_str(match self {
             Self::OneColour => "the window has one colour, or lines that are hardly darker than the paper: is there light, and is the lens free?",
             Self::TooThick => "what is seen is no line but an area, or a line too thick for the window",
-            Self::Elsewhere => "the lines seen are not those that should be here: was the paper moved?",
+            Self::Elsewhere => "the lines seen are not those that should be here: the place was lost, or the paper was moved",
             Self::WindowSize => "the window has another size than before, or too few px a side: the camera has to see more of the paper",
         })
     }

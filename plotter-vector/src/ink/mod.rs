@@ -7,6 +7,7 @@ pub(crate) mod hairlines;
 pub(crate) mod illumination;
 mod layers;
 pub(crate) mod line_width;
+pub(crate) mod mark_sizes;
 mod palette;
 pub(crate) mod pen;
 pub(crate) mod row_threshold;

@@ -7,7 +7,7 @@
 use crate::parallel::each;
 use crate::{
     ink::{Evened, Look, RowThreshold, Survey},
-    picture::{Bitmap, Gray},
+    picture::{Bitmap, Gray, Histogram, histogram::otsu},
 };
 use core::{fmt, str};
 
@@ -209,7 +209,7 @@ impl Threshold {
     pub fn apply(self, gray: &Gray) -> (Bitmap, Option<Split>) {
         let survey = self.survey(gray);
         if survey.is_uneven() {
-            let (evened, settings) = self.evened(gray);
+            let Some((evened, settings)) = self.evened(gray) else { return self.by_level().apply(gray) };
             let (ink, split) = settings.apply(&evened.gray);
             return (ink, evened.look.split(split));
         }
@@ -247,10 +247,10 @@ impl Threshold {
     /// ```
     #[must_use]
     pub fn look(self, gray: &Gray) -> Option<(Gray, Look)> {
-        self.survey(gray).is_uneven().then(|| {
-            let (Evened { gray, look }, _) = self.evened(gray);
-            (gray, look)
-        })
+        if !self.survey(gray).is_uneven() {
+            return None;
+        }
+        self.evened(gray).map(|(Evened { gray, look }, _)| (gray, look))
     }
 
     /// What must be known of all of a picture before its first pixel can be told.
@@ -260,12 +260,48 @@ impl Threshold {
         survey
     }
 
-    /// A picture that was found uneven as if its ink were black, and what tells the ink there.
-    pub(crate) fn evened(self, gray: &Gray) -> (Evened, Self) {
+    /// A picture that was found uneven as if its ink were black, and what tells the ink there; none where
+    /// that leaves nothing, and one level tells two classes apart: a picture full of lines, which have no
+    /// paper beside them.
+    pub(crate) fn evened(self, gray: &Gray) -> Option<(Evened, Self)> {
         let evened = Evened::of(gray, self.polarity, self.keep_pale);
+        if evened.is_empty() && has_two_classes(gray) {
+            return None;
+        }
         let method = ThresholdMethod::Level(Evened::LEVEL);
-        (evened, Self { polarity: Polarity::DarkInk, method, ..self })
+        Some((evened, Self { polarity: Polarity::DarkInk, method, ..self }))
     }
+
+    /// By one level, whatever the picture is like.
+    pub(crate) fn by_level(self) -> Self {
+        Self { method: ThresholdMethod::Otsu, ..self }
+    }
+}
+
+/// Whether one level explains nearly all differences between levels, which are those of black and white: of
+/// noise, which has one class, it explains 64 to 81 %.
+#[expect(clippy::cast_precision_loss, reason = "a picture's pixels")]
+fn has_two_classes(gray: &Gray) -> bool {
+    const EXPLAINED: f64 = 0.86;
+    const CONTRAST: f64 = 100.0;
+    let mut histogram = Histogram::default();
+    histogram.push(gray.pixels());
+    let counts = histogram.counts();
+    let Some(level) = otsu(&counts, 0) else { return false };
+    // Pixels, and the sums of their levels and of the squares.
+    let sums = |dark: Option<bool>| {
+        let levels = (0_u16..).zip(counts);
+        let own = levels.filter(|(at, _)| dark.is_none_or(|dark| dark == (*at <= u16::from(level))));
+        own.fold([0.0; 3], |[n, sum, squares], (at, pixels)| {
+            let (at, pixels) = (f64::from(at), pixels as f64);
+            [n + pixels, sum + pixels * at, squares + pixels * at * at]
+        })
+    };
+    let spread = |[n, sum, squares]: [f64; 3]| squares - sum * sum / n.max(1.0);
+    let mean = |[n, sum, _]: [f64; 3]| sum / n.max(1.0);
+    let (dark, light) = (sums(Some(true)), sums(Some(false)));
+    let explained = 1.0 - (spread(dark) + spread(light)) / spread(sums(None)).max(1.0);
+    explained > EXPLAINED && mean(light) - mean(dark) > CONTRAST
 }
 
 fn fill(threshold: &RowThreshold, gray: &Gray, ink: &mut Bitmap) {

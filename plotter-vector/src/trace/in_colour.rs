@@ -104,7 +104,12 @@ impl Vectorizer {
             beyond = beyond.and(of_pen);
             measuring.at(done, of)?;
         }
-        let traced = Vectorized { drawing, error: tally.report(), beyond, split: None, look: None, removed };
+        let mut doubt = None;
+        for (pen, ink) in layers.palette().pens().iter().zip(&inks) {
+            doubt = doubt.or(self.doubt(&drawing.of_pen(pen.number), ink, Despeckled::default(), 0)?);
+        }
+        let error = tally.report();
+        let traced = Vectorized { drawing, error, beyond, split: None, look: None, removed, doubt };
         Ok(VectorizedColour { traced, palette: layers.palette().clone(), inks, worst: tally.worst() })
     }
 }

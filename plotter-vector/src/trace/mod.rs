@@ -1,12 +1,14 @@
 //! From picture to drawing: the vectorizer, for whole pictures, for colours, and row by row.
 
 pub(crate) mod bare_ink;
+mod doubt;
 mod in_colour;
 pub(crate) mod pipeline;
 mod progress;
 mod sheet;
 mod vectorize_error;
 
+pub use doubt::Doubt;
 pub use in_colour::VectorizedColour;
 pub use pipeline::{Algorithm, MAX_INK_PIXELS, Mode, Prefer, Vectorized, Vectorizer};
 pub use progress::{Cancelled, Progress};

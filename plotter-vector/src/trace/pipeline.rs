@@ -3,6 +3,7 @@
 use crate::areas::{Islands, Opening};
 use crate::centreline::centrelines::Centring;
 use crate::ink::hairlines::Hairlines;
+use crate::ink::mark_sizes::MarkSizes;
 use crate::ink::pen::Pen;
 use crate::ink::row_threshold::has_rims;
 use crate::raster::continuity::{Joined, join, link};
@@ -23,7 +24,7 @@ use crate::{
     raster::{OrderedTracking, ThinningMethod},
     report::{ErrorReport, ErrorTally},
     stroke::{Bounded, Curve, Drawing, DynamicThreshold, PxPoint, Simplify},
-    trace::{SheetErrors, VectorizeError},
+    trace::{Doubt, SheetErrors, VectorizeError, doubt::Dirt},
 };
 use std::collections::BTreeSet;
 
@@ -170,6 +171,8 @@ pub struct Vectorized {
     pub look: Option<Look>,
     /// What was taken for dirt, and is not drawn: no error is told of it.
     pub removed: Despeckled,
+    /// Why it may be no drawing, of ours.
+    pub doubt: Option<Doubt>,
 }
 
 /// Most ink of a picture that is vectorized: 2²⁵ px, five times the lines of a dense A0 sheet at 300 dots per
@@ -185,27 +188,41 @@ impl Vectorizer {
     /// # Errors
     /// [`VectorizeError`].
     pub fn vectorize(&self, gray: &Gray) -> Result<Vectorized, VectorizeError> {
+        self.vectorized(gray, 0)
+    }
+
+    /// The same of a picture of which so many specks have been left out already.
+    fn vectorized(&self, gray: &Gray, left_out: usize) -> Result<Vectorized, VectorizeError> {
         let survey = self.threshold.survey(gray);
         if survey.is_uneven() {
-            let (evened, settings) = self.evened(gray);
-            let found = settings.vectorize(&evened.gray)?;
-            let split = evened.look.split(found.split);
-            return Ok(Vectorized { look: Some(evened.look), split, ..found });
+            let Some((evened, settings)) = self.evened(gray) else {
+                return self.by_level().vectorized(gray, left_out);
+            };
+            let look = evened.look;
+            let found = settings.vectorized(&evened.gray, look.left_out)?;
+            let split = look.split(found.split);
+            let doubt = if split.is_none() { Doubt::of_empty(&look) } else { found.doubt };
+            return Ok(Vectorized { look: Some(look), split, doubt, ..found });
         }
         let (ink, split) = told(survey, gray);
         // Of two levels the ink says all: its rims are no more exact, and dirt that was taken out is no rim.
         let grey = split.filter(|split| split.has_greys).map(|split| (gray, split.ink_is_dark));
-        Ok(Vectorized { split, ..self.trace_ink(ink, grey)? })
+        Ok(Vectorized { split, ..self.trace_ink(ink, grey, left_out)? })
     }
 
     /// A picture that was found uneven as if its ink were black, and the settings that trace it.
-    pub(crate) fn evened(&self, gray: &Gray) -> (Evened, Self) {
-        let (evened, threshold) = self.threshold.evened(gray);
+    pub(crate) fn evened(&self, gray: &Gray) -> Option<(Evened, Self)> {
+        let (evened, threshold) = self.threshold.evened(gray)?;
         // The rims of what a camera or a pencil made are ragged: ink that is bare there is worth no stroke.
         let prefer = if self.prefer == Prefer::Both { Prefer::Strokes } else { self.prefer };
         let of_grain = evened.look.broken.then(|| GAP_WIDTHS * f64::from(evened.look.line_px));
         let gap_px = self.gap_px.or(of_grain);
-        (evened, Self { threshold, prefer, gap_px, ..*self })
+        Some((evened, Self { threshold, prefer, gap_px, ..*self }))
+    }
+
+    /// The same settings with one level for all of the picture.
+    pub(crate) fn by_level(&self) -> Self {
+        Self { threshold: self.threshold.by_level(), ..*self }
     }
 
     /// The ink of a picture that is vectorized: told from the paper and, by ours, without dirt.
@@ -231,22 +248,44 @@ impl Vectorizer {
     /// # Errors
     /// [`VectorizeError`].
     pub fn trace(&self, ink: &Bitmap) -> Result<Vectorized, VectorizeError> {
-        self.trace_ink(ink.clone(), None)
+        self.trace_ink(ink.clone(), None, 0)
     }
 
-    fn trace_ink(&self, mut ink: Bitmap, grey: Option<(&Gray, bool)>) -> Result<Vectorized, VectorizeError> {
+    fn trace_ink(
+        &self,
+        mut ink: Bitmap,
+        grey: Option<(&Gray, bool)>,
+        left_out: usize,
+    ) -> Result<Vectorized, VectorizeError> {
         let Unordered { drawing, errors, areas, removed } = self.unordered(&mut ink, grey)?;
         let (drawing, errors) = self.completed(drawing, errors, &ink, areas.as_ref());
         let (drawing, errors) = self.in_order(drawing, errors);
         let errors = self.known_or_measured(errors, &ink, &drawing, areas.as_ref());
         Ok(Vectorized {
-            drawing,
             error: errors.report,
             beyond: errors.beyond,
             split: None,
             look: None,
+            doubt: self.doubt(&drawing, &ink, removed, left_out)?,
             removed,
+            drawing,
         })
+    }
+
+    /// Why strokes of ink, from which dirt was taken, may be no drawing.
+    pub(crate) fn doubt(
+        &self,
+        drawing: &Drawing,
+        ink: &Bitmap,
+        removed: Despeckled,
+        left_out: usize,
+    ) -> Result<Option<Doubt>, VectorizeError> {
+        if self.algorithm == Algorithm::Published || drawing.strokes().len() == 0 {
+            return Ok(None);
+        }
+        let line_px = Pen::of(ink).width_px;
+        let dirt = Dirt { least_px: self.smallest_mark_px(line_px), removed, left_out };
+        Doubt::of(drawing, line_px, dirt, || Ok(MarkSizes::of(ink)))
     }
 
     /// The strokes, with more for the ink that those of ours leave bare. The errors stay known only where

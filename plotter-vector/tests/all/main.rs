@@ -14,6 +14,7 @@ mod bare_ink;
 mod blurred_corners;
 mod centrelines;
 mod cut_lines;
+mod doubt;
 mod evened;
 #[cfg(feature = "image")]
 mod fewest_vertices;

@@ -174,7 +174,14 @@ impl Evened {
         Self { gray: Gray::of_checked_size(gray.width(), gray.height(), levels), look }
     }
 
-    fn empty(gray: &Gray, look: Look) -> Self {
+    /// Whether nothing is ink.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.gray.pixels().iter().all(|level| *level > Self::LEVEL)
+    }
+
+    /// Without ink: its noise is that of the picture itself, for nothing tells which side is ink.
+    fn empty(gray: &Gray, mut look: Look) -> Self {
+        look.noise_levels = Paper::medians(&Plane::smoothed(gray, FIRST_SIGMA_PX, false)).usual_noise / LEVEL;
         let white = vec![u8::MAX; gray.pixels().len()];
         Self { gray: Gray::of_checked_size(gray.width(), gray.height(), white), look }
     }

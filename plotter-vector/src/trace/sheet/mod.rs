@@ -14,6 +14,7 @@ mod limits;
 mod pipeline;
 mod step;
 
+use crate::ink::mark_sizes::MarkSizes;
 use crate::ink::pen::PenSurvey;
 use crate::ink::row_threshold::RowThreshold;
 use crate::report::coverage::AreaPen;
@@ -26,7 +27,7 @@ use crate::{
         SizeError,
     },
     stroke::Drawing,
-    trace::{Algorithm, Cancelled, Progress, VectorizeError, Vectorizer},
+    trace::{Algorithm, Cancelled, Doubt, Progress, VectorizeError, Vectorizer, doubt::Dirt},
 };
 use core::fmt;
 use errors::Measure;
@@ -51,6 +52,8 @@ pub struct TracedSheet {
     pub errors: Option<SheetErrors>,
     /// What was taken for dirt, and is not drawn: no error is told of it.
     pub removed: Despeckled,
+    /// Why it may be no drawing, of ours.
+    pub doubt: Option<Doubt>,
 }
 
 /// Why a sheet cannot be vectorized.
@@ -169,7 +172,7 @@ impl Vectorizer {
         source: &mut impl RowSource,
         progress: &mut Progress<'_>,
     ) -> Result<TracedSheet, SheetError> {
-        self.traced_rows(source, false, progress)
+        self.traced_rows(source, false, 0, progress)
     }
 
     /// As [`Vectorizer::vectorize_rows`], and how far the ink lies from the strokes: what
@@ -199,13 +202,14 @@ impl Vectorizer {
         source: &mut impl RowSource,
         progress: &mut Progress<'_>,
     ) -> Result<TracedSheet, SheetError> {
-        self.traced_rows(source, true, progress)
+        self.traced_rows(source, true, 0, progress)
     }
 
     fn traced_rows(
         &self,
         source: &mut impl RowSource,
         with_errors: bool,
+        left_out: usize,
         progress: &mut Progress<'_>,
     ) -> Result<TracedSheet, SheetError> {
         if self.algorithm == Algorithm::Ours {
@@ -220,15 +224,21 @@ impl Vectorizer {
         let (survey, survey_of_black) = survey(self, source, &mut progress.part(0.1))?;
         if survey.is_uneven() {
             let gray = whole_of(source, &mut progress.part(0.2))?;
-            let (evened, settings) = self.evened(&gray);
+            let Some((evened, settings)) = self.evened(&gray) else {
+                let mut rows = GrayRows::new(gray);
+                return self.by_level().traced_rows(&mut rows, with_errors, 0, &mut progress.part(1.0));
+            };
             drop(gray);
             let (look, mut rows) = (evened.look, GrayRows::new(evened.gray));
-            let found = settings.traced_rows(&mut rows, with_errors, &mut progress.part(1.0))?;
-            return Ok(TracedSheet { look: Some(look), split: look.split(found.split), ..found });
+            let found =
+                settings.traced_rows(&mut rows, with_errors, look.left_out, &mut progress.part(1.0))?;
+            let split = look.split(found.split);
+            let doubt = if split.is_none() { Doubt::of_empty(&look) } else { found.doubt };
+            return Ok(TracedSheet { look: Some(look), split, doubt, ..found });
         }
         if survey.needs_more_than_a_level() {
             let threshold = Threshold { method: ThresholdMethod::Adaptive, ..self.threshold };
-            return Self { threshold, ..*self }.traced_rows(source, with_errors, &mut progress.part(1.0));
+            return Self { threshold, ..*self }.traced_rows(source, with_errors, 0, &mut progress.part(1.0));
         }
         let Some(threshold) = survey.finish() else { return Ok(empty) };
         // Of 1 bit a pixel black is nearly always the ink: then all is known already.
@@ -258,9 +268,9 @@ impl Vectorizer {
                 Ok(())
             })?;
             drop(rows);
-            let (drawing, errors, removed) = self.traced_whole(ink, with_errors)?;
+            let (drawing, errors, removed, doubt) = self.traced_whole(ink, with_errors, left_out)?;
             progress.part(1.0).at(1, 1)?;
-            return Ok(TracedSheet { drawing, errors, removed, ..found });
+            return Ok(TracedSheet { drawing, errors, removed, doubt, ..found });
         }
         let mut sheet = SheetPipeline::new(self, (width, height), (pen, keeps_pixels), &threshold);
         for_each_row(source, &mut strokes_part, |_, row| sheet.push(row))?;
@@ -283,9 +293,20 @@ impl Vectorizer {
             }
         }
         let (drawing, _) = self.in_order(drawing, None);
+        let dirt = Dirt { least_px: smallest_px, removed, left_out };
+        let doubt = Doubt::of(&drawing, pen.width_px, dirt, || {
+            let mut sizes = MarkSizes::new(width);
+            let mut ink = vec![0; width.div_ceil(u64::BITS) as usize];
+            for_each_row(source, &mut progress.part(if with_errors { 0.55 } else { 1.0 }), |y, row| {
+                threshold.ink_of(y, row, width, &mut ink);
+                sizes.push(&ink);
+                Ok(())
+            })?;
+            Ok::<_, SheetError>(sizes)
+        })?;
         let errors =
             if with_errors { Some(measure.errors(source, &drawing, &mut progress.part(1.0))?) } else { None };
-        Ok(TracedSheet { drawing, errors, removed, ..found })
+        Ok(TracedSheet { drawing, errors, removed, doubt, ..found })
     }
 
     /// A sheet that has to be traced as a whole.
@@ -293,12 +314,14 @@ impl Vectorizer {
         &self,
         mut ink: Bitmap,
         with_errors: bool,
-    ) -> Result<(Drawing, Option<SheetErrors>, Despeckled), SheetError> {
+        left_out: usize,
+    ) -> Result<(Drawing, Option<SheetErrors>, Despeckled, Option<Doubt>), SheetError> {
         let Unordered { drawing, errors, areas, removed } = self.unordered(&mut ink, None)?;
         let (drawing, errors) = self.completed(drawing, errors, &ink, areas.as_ref());
         let (drawing, errors) = self.in_order(drawing, errors);
         let errors = with_errors.then(|| self.known_or_measured(errors, &ink, &drawing, areas.as_ref()));
-        Ok((drawing, errors, removed))
+        let doubt = self.doubt(&drawing, &ink, removed, left_out)?;
+        Ok((drawing, errors, removed, doubt))
     }
 }
 
