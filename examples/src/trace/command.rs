@@ -5,7 +5,9 @@ use super::figures::{Report, table};
 use super::files::{check_size, prints_file, write_files};
 use super::settings::settings;
 use super::traced::{Input, by_rows, in_colour};
-use crate::shared::{ExitStatus, SizeOptions, Telling, UsualSize, is_standard, lost_ink, run, write_output};
+use crate::shared::{
+    ExitStatus, SizeOptions, Telling, UsualSize, is_standard, lost_ink, no_pen_got, run, write_output,
+};
 use crate::trace::{Interrupt, Overlay, overlay_png};
 use clap::{Parser, ValueEnum};
 use std::fs::File;
@@ -271,6 +273,9 @@ pub(super) fn trace(arguments: &TraceCommand, stopped: &mut bool) -> Result<(), 
         arguments.telling.tell(&table, json)?;
     }
     // Everything is written: what was traced may still be of use.
+    if let Some(left) = traced.unassigned {
+        return Err(here(&no_pen_got(left)));
+    }
     match &traced.errors {
         Some(errors) => lost_ink(&settings.vectorizer, errors, traced.widest_px, traced.is_uneven)
             .map_err(|error| here(&error)),
