@@ -11,6 +11,7 @@ mod judged_corpus;
 mod judged_drawing;
 mod judgement;
 mod near_lines;
+pub mod pens;
 
 pub use homography::Homography;
 pub use judged_corpus::judged_corpus;

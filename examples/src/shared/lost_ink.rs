@@ -1,7 +1,8 @@
 //! [`lost_ink`]: ink that a vectorization should have drawn, and did not.
 
 use plotter_vector::{
-    Algorithm, FileRows, Pixel, Progress, TracedSheet, Vectorizer, picture::FileNotes, trace::SheetErrors,
+    Algorithm, FileRows, Pixel, Progress, TracedSheet, Vectorizer, ink::Unassigned, picture::FileNotes,
+    trace::SheetErrors,
 };
 use std::io::Cursor;
 
@@ -48,6 +49,16 @@ pub fn lost_ink(
     }
 }
 
+/// Says where ink lies that none of several pens got.
+pub(crate) fn no_pen_got(Unassigned { at, length_px, pieces }: Unassigned) -> String {
+    let others = if pieces > 1 { format!(", and {} pieces more", pieces - 1) } else { String::new() };
+    format!(
+        "no pen got {length_px} px of ink at ({}, {}) px{others}: it is not drawn; give more pens (--pens), or a palette \
+         that has its colour",
+        at.x, at.y
+    )
+}
+
 /// A page of a picture file as strokes with their errors, and what the file says of itself; where ink was
 /// lost, [`lost_ink`] tells.
 ///
@@ -87,6 +98,13 @@ mod tests {
             assert!(said.contains(part), "{part}: {said}");
         }
         assert_eq!(lost_ink(&within_half, &SheetErrors::default(), Some(3), false), Ok(()));
+    }
+
+    #[test]
+    fn ink_that_no_pen_got_is_said_with_its_place_and_length() {
+        let said = |pieces| no_pen_got(Unassigned { at: Pixel::new(12, 34), length_px: 56, pieces });
+        assert!(said(1).starts_with("no pen got 56 px of ink at (12, 34) px: it is not drawn"));
+        assert!(said(3).contains("px, and 2 pieces more: it is not drawn"));
     }
 
     #[test]

@@ -20,6 +20,7 @@ pub use doubted::{IN_MACHINE_FILE, doubted};
 pub use exit_status::ExitStatus;
 pub use files::{is_standard, read_file, read_input, write_file, write_output};
 pub use fit_drawing::{fit_drawing, fit_picture};
+pub(crate) use lost_ink::no_pen_got;
 pub use lost_ink::{lost_ink, vectorized};
 pub use pen_colours::{pen_colour, usual_colour};
 pub use picture_size::{PictureSize, SizeOptions, UsualSize, told_notes};

@@ -6,7 +6,8 @@ use super::files::{check_size, prints_file, write_files};
 use super::settings::settings;
 use super::traced::{Input, by_rows, in_colour};
 use crate::shared::{
-    ExitStatus, SizeOptions, Telling, UsualSize, doubted, is_standard, lost_ink, run, write_output,
+    ExitStatus, SizeOptions, Telling, UsualSize, doubted, is_standard, lost_ink, no_pen_got, run,
+    write_output,
 };
 use crate::trace::{Interrupt, Overlay, overlay_png};
 use clap::{Parser, ValueEnum};
@@ -279,6 +280,9 @@ pub(super) fn trace(arguments: &TraceCommand, stopped: &mut bool) -> Result<(), 
         arguments.telling.tell(&table, json)?;
     }
     // Everything is written: what was traced may still be of use.
+    if let Some(left) = traced.unassigned {
+        return Err(here(&no_pen_got(left)));
+    }
     let is_meant = arguments.min_stroke.is_some() && !matches!(traced.doubt, Some(Doubt::Rough { .. }));
     doubted(traced.doubt.filter(|_| !is_meant), REMEDY).map_err(|error| here(&error))?;
     match &traced.errors {

@@ -5,8 +5,8 @@ use super::settings::Settings;
 use crate::shared::{WorkShown, is_standard, read_file, read_input, told_ink};
 use crate::trace::{Interrupt, overlay_step};
 use plotter_vector::{
-    Colour, DecodeError, Drawing, FileRows, Gray, Palette, Pixel, Progress,
-    ink::{Despeckled, Pens, pen_width_px},
+    Colour, DecodeError, Drawing, FileRows, Gray, Palette, Pixel, Progress, Rgb,
+    ink::{Despeckled, Pens, Unassigned, pen_width_px},
     picture::{FileNotes, Row, RowSource as _, decode_page_in_colour},
     trace::{Doubt, SheetErrors},
 };
@@ -71,6 +71,8 @@ pub(super) struct Traced {
     pub(super) is_uneven: bool,
     /// How the ink was told from the paper, in words.
     pub(super) ink: Vec<(&'static str, String)>,
+    /// Ink that none of several pens got.
+    pub(super) unassigned: Option<Unassigned>,
 }
 
 /// The picture's file: one that can be read as often as it takes, or the bytes of what cannot, as a pipe.
@@ -157,7 +159,15 @@ pub(super) fn by_rows<R: Read + Seek>(
         picture,
         time,
         notes: scan.notes().clone(),
+        unassigned: None,
     })
+}
+
+/// That the ruling of paper was left out.
+fn told_ruling(ruling: Option<Rgb>) -> Vec<(&'static str, String)> {
+    let told =
+        |colour: Rgb| ("ruling", format!("left out: {colour} all over the sheet; --ruling keep draws it"));
+    ruling.map(told).into_iter().collect()
 }
 
 fn go_on(interrupt: Interrupt) -> ControlFlow<()> {
@@ -241,7 +251,8 @@ pub(super) fn in_colour(
         time,
         notes,
         is_uneven: false,
-        ink: Vec::new(),
+        ink: told_ruling(found.ruling),
+        unassigned: found.unassigned,
         drawing,
     })
 }

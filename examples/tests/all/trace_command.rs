@@ -1,6 +1,7 @@
 //! The command `trace`: what it writes, and what it says to bad input.
 
 use crate::built_example;
+use crate::real_files::other;
 
 use built_example::{Folder, complaint, data, run_example, run_with_input};
 
@@ -328,6 +329,46 @@ fn pens_are_told_apart_by_colour() {
         assert!(numbers.iter().all(|number| plt.contains(&format!("SP{number};"))), "{plt}");
     }
     assert_eq!(folder.trace_report(&picture, &["--pens", "1"])["pens"].as_array().unwrap().len(), 1);
+}
+
+/// A line of 4 px in black ink and one of 3 px in pencil, both with soft rims, as a PPM of 400 x 200 px.
+fn pencil_and_pen() -> Vec<u8> {
+    let cover = |x: u32, y: u32, at: f64, width: f64| {
+        if !(20..380).contains(&x) {
+            return 0.0;
+        }
+        let middle = at + 20.0 * (f64::from(x) - 20.0) / 360.0;
+        (width / 2.0 + 0.5 - (f64::from(y) - middle).abs()).clamp(0.0, 1.0)
+    };
+    let level = |(x, y): (u32, u32)| {
+        let level = 255.0 - 229.0 * cover(x, y, 50.0, 4.0) - 95.0 * cover(x, y, 130.0, 3.0);
+        // Written out as a number and read again, for there is no checked way from a fraction to a byte.
+        [format!("{level:.0}").parse::<u8>().unwrap(); 3]
+    };
+    let levels = (0..200).flat_map(|y| (0..400).map(move |x| (x, y))).flat_map(level);
+    [b"P6 400 200 255\n".to_vec(), levels.collect()].concat()
+}
+
+#[test]
+fn a_pencil_line_beside_ink_has_its_pen_or_is_said_to_be_left() {
+    let folder = Folder::new();
+    let picture = folder.write("pencil.ppm", pencil_and_pen());
+    let shown = other("cases/pictures", "pencil_and_pen.png").map(|path| path.display().to_string());
+    let black = folder.write("black.toml", "schema = 1\n[[pen]]\nnumber = 1\ncolour = \"#1a1a1a\"\n");
+    let svg = folder.file("a.svg");
+    for picture in [Some(picture), shown].into_iter().flatten() {
+        for pens in ["auto", "2"] {
+            let report = folder.trace_report(&picture, &["--pens", pens]);
+            let strokes: Vec<_> =
+                report["pens"].as_array().unwrap().iter().map(|pen| pen["strokes"].clone()).collect();
+            assert_eq!(strokes, [1, 1], "{picture} --pens {pens}");
+        }
+        let output = run_example("trace", &[&picture, "--pens", &black, "--svg", &svg]);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(said.contains("no pen got 36") && said.contains("px of ink at ("), "{said}");
+        assert!(std::fs::read_to_string(&svg).unwrap().contains("</svg>"), "what was traced is written");
+    }
 }
 
 #[test]

@@ -17,7 +17,7 @@ mod threshold;
 
 pub(crate) use evened::Evened;
 pub use evened::Look;
-pub use layers::{Layers, Pens, PensError};
+pub use layers::{Layers, Pens, PensError, Unassigned};
 pub use line_width::{LineWidth, pen_width_px};
 pub use palette::{MAX_PENS, Palette, PaletteError, PalettePen};
 #[cfg(feature = "toml")]

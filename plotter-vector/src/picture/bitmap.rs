@@ -247,6 +247,14 @@ impl Bitmap {
         Some(Pixel::new(u32::try_from(word).ok()? * BITS + bits.trailing_zeros(), y))
     }
 
+    /// The first ink pixel of the row `y` or below.
+    pub(crate) fn first_from(&self, y: u32) -> Option<Pixel> {
+        (y..self.height()).find_map(|y| {
+            let word = self.row(y).iter().position(|bits| *bits != 0)?;
+            self.first_of_word(y, word)
+        })
+    }
+
     /// How many ink pixels follow each other to the left and to the right of a pixel, at most `most`.
     pub(crate) fn run_level(&self, at: Pixel, most: u32) -> (u32, u32) {
         let row = self.row(at.y);

@@ -3,11 +3,11 @@
 use crate::report::coverage::{Beyond, add_coverage};
 use crate::trace::pipeline::Unordered;
 use crate::{
-    ink::{Despeckled, Palette, Pens},
-    picture::{Bitmap, Colour, Pixel},
+    ink::{Despeckled, Palette, Pens, Threshold, ThresholdMethod, Unassigned},
+    picture::{Bitmap, Colour, Gray, Pixel, Rgb},
     report::ErrorTally,
     stroke::Drawing,
-    trace::{Progress, VectorizeError, Vectorized, Vectorizer},
+    trace::{Algorithm, Progress, VectorizeError, Vectorized, Vectorizer},
 };
 
 /// Where the work has come to when the pens are told apart, when they have their strokes, and when these are
@@ -29,11 +29,16 @@ pub struct VectorizedColour {
     pub inks: Vec<Bitmap>,
     /// The pixel with the greatest error and its error, px; none without ink.
     pub worst: Option<(Pixel, f64)>,
+    /// Ink that one pen alone would draw, and that none of these pens got. It is not drawn.
+    pub unassigned: Option<Unassigned>,
+    /// The colour of the ruling of squared or ruled paper. It is left out where pens are found, unless the
+    /// threshold keeps what is pale.
+    pub ruling: Option<Rgb>,
 }
 
 impl Vectorizer {
     /// Vectorizes a picture in colour, pen by pen; then all strokes are ordered, each pen's together. The
-    /// threshold is not asked. Where one pen crosses another, its lines go on under it.
+    /// threshold's level is not asked. Where one pen crosses another, its lines go on under it.
     ///
     /// ```
     /// # use plotter_vector::{Colour, Vectorizer, ink::Pens};
@@ -70,7 +75,7 @@ impl Vectorizer {
         progress: &mut Progress<'_>,
     ) -> Result<VectorizedColour, VectorizeError> {
         progress.at(0, 1)?;
-        let layers = pens.separate(picture).map_err(VectorizeError::Pens)?;
+        let layers = pens.shared_out(picture, self.threshold.keep_pale).map_err(VectorizeError::Pens)?;
         progress.part(TOLD_APART).at(1, 1)?;
         let of = layers.palette().pens().len() as u64;
         let mut drawing = Drawing::new(picture.width(), picture.height());
@@ -110,7 +115,22 @@ impl Vectorizer {
         }
         let error = tally.report();
         let traced = Vectorized { drawing, error, beyond, split: None, look: None, removed, doubt };
-        Ok(VectorizedColour { traced, palette: layers.palette().clone(), inks, worst: tally.worst() })
+        let unassigned = match self.algorithm {
+            Algorithm::Ours => {
+                // A level that was chosen for one pen says nothing of several.
+                let threshold = Threshold { method: ThresholdMethod::Auto, ..self.threshold };
+                layers.unassigned(&Self { threshold, ..*self }.ink(&Gray::from(picture)))
+            }
+            Algorithm::Published => None,
+        };
+        Ok(VectorizedColour {
+            traced,
+            palette: layers.palette().clone(),
+            inks,
+            worst: tally.worst(),
+            unassigned,
+            ruling: layers.ruling(),
+        })
     }
 }
 

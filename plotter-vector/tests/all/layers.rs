@@ -6,7 +6,7 @@
 )]
 
 use plotter_vector::{
-    Bitmap, Colour, Palette, Pixel, Rgb,
+    Bitmap, Colour, Palette, Pixel, Rgb, Vectorizer,
     ink::{Layers, PalettePen, Pens},
 };
 
@@ -400,6 +400,84 @@ fn coverage_adds_up_to_the_width_of_the_stroke() {
     assert_eq!(crossing, 3 * 255, "below red the stroke goes on");
     assert_eq!(layers.coverage(9, &coverage_of_nothing(), &picture), None);
     assert_eq!(layers.coverage(blue, &coverage_of_nothing(), &picture), None);
+}
+
+/// A pencil, paler than black and of its hue.
+const PENCIL: Rgb = Rgb([160, 160, 160]);
+
+/// Black and pencil lines that cross each other.
+fn pencil_and_black() -> Vec<Stroke> {
+    let line = |pen, from, to| Stroke { width_px: 3.4, ..Stroke::new(pen, from, to) };
+    vec![
+        line(PENCIL, (20.0, 45.0), (240.0, 95.0)),
+        line(BLACK, (20.0, 130.0), (240.0, 30.0)),
+        line(BLACK, (60.0, 15.0), (100.0, 155.0)),
+        line(PENCIL, (190.0, 15.0), (160.0, 155.0)),
+    ]
+}
+
+#[test]
+fn a_pencil_beside_black_is_a_pen_and_both_are_whole_where_they_cross() {
+    let strokes = pencil_and_black();
+    let picture = picture(260, 170, &strokes);
+    for pens in [Pens::Found, Pens::Count(2), Pens::Given(palette(&[BLACK, PENCIL]))] {
+        let layers = pens.separate(&picture).unwrap();
+        assert_eq!(layers.palette().pens().len(), 2, "{pens:?}");
+        let right = share_on_its_pen(&layers, &strokes);
+        assert!(right > 0.99, "{pens:?}: {right}");
+        for stroke in &strokes {
+            let whole = recall(&layers.bridged(layer(&layers, stroke.pen)).unwrap(), stroke);
+            assert!(whole > 0.99, "{pens:?}, {}: {whole}", stroke.pen);
+        }
+    }
+}
+
+#[test]
+fn pens_in_uneven_light_are_those_of_an_even_one() {
+    let mut strokes = four_pens();
+    strokes.push(Stroke::new(YELLOW, (12.0, 200.0), (200.0, 250.0)));
+    let mut pixels = draw(260, 260, Rgb([238, 232, 220]), &strokes);
+    // The light falls off to a half.
+    for (at, pixel) in pixels.iter_mut().enumerate() {
+        let light = 1.0 - (at % 260 + at / 260) as f64 / 1040.0;
+        *pixel = pixel.map(|level| level * light);
+    }
+    pixels.as_flattened_mut().iter_mut().zip(noise(9)).for_each(|(level, noise)| *level += 3.0 * noise);
+    let layers = Pens::Found.separate(&scan(260, &pixels)).unwrap();
+    let found: Vec<&str> = layers.iter().map(|(pen, _)| pen.name.as_str()).collect();
+    assert_eq!(found.len(), 5, "{found:?}");
+    let right = share_on_its_pen(&layers, &strokes);
+    assert!(right > 0.99, "{right}");
+}
+
+#[test]
+fn the_ruling_of_squared_paper_is_no_pen() {
+    let strokes = four_pens();
+    let mut pixels = draw(260, 260, Rgb::WHITE, &strokes);
+    let squares = |at: usize| (at % 260) % 20 < 2 || (at / 260) % 20 < 2;
+    for (at, pixel) in pixels.iter_mut().enumerate() {
+        if squares(at) && *pixel == [255.0; 3] {
+            *pixel = [210.0, 220.0, 233.0];
+        }
+    }
+    let picture = scan(260, &pixels);
+    for pens in [Pens::Found, Pens::Count(4)] {
+        let layers = pens.separate(&picture).unwrap();
+        assert_eq!((layers.palette().pens().len(), layers.ruling()), (4, Some(Rgb([210, 220, 233]))));
+        let right = share_on_its_pen(&layers, &strokes);
+        assert!(right > 0.99, "{right}");
+    }
+}
+
+#[test]
+fn ink_that_no_given_pen_draws_is_told_with_its_place_and_length() {
+    let strokes =
+        [Stroke::new(BLACK, (10.0, 12.0), (190.0, 30.0)), Stroke::new(PENCIL, (10.0, 82.0), (190.0, 60.0))];
+    let picture = picture(200, 100, &strokes);
+    let left = |pens| Vectorizer::default().vectorize_colour(&picture, &pens).unwrap().unassigned;
+    let lost = left(Pens::Given(palette(&[BLACK]))).unwrap();
+    assert!((178..=186).contains(&lost.length_px) && (58..=84).contains(&lost.at.y), "{lost:?}");
+    assert_eq!((lost.pieces, left(Pens::Found), left(Pens::Count(2))), (1, None, None));
 }
 
 /// Ink of another size.

@@ -11,6 +11,8 @@ pub(crate) mod strokes;
 mod technical;
 mod truth;
 
+#[cfg(test)]
+pub(crate) use junctions::of as junctions_of;
 pub use pictures::all;
 pub use sheet::{Sheet, Size};
 pub use strokes::Picture;

@@ -23,12 +23,14 @@ pub use parameters::{PARAMETERS, Parameter, parameter_table};
 
 use crate::corpus::random::Random;
 use crate::corpus::{Truth, View};
-use cover::cover;
+pub(crate) use cover::cover;
 use drawings::mixed;
 use image::codecs::jpeg::JpegEncoder;
 use image::imageops::{FilterType, resize};
 use image::{DynamicImage, GrayImage, ImageFormat, ImageResult};
-use plane::Plane;
+pub(crate) use photographed::{light, rules};
+pub(crate) use plane::Plane;
+pub(crate) use sheet::Sheet;
 use sheet::{grey_picture, ink_picture};
 use std::io::Cursor;
 

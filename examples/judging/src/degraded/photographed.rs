@@ -23,7 +23,7 @@ const RULE_PX: f64 = 2.0;
 const EDGE: f64 = 0.015;
 
 /// Light from one side, less towards the corners as through a lens: from 1 down to `least`.
-fn light((width, height): (usize, usize), least: f64, random: &mut Random) -> Plane {
+pub(crate) fn light((width, height): (usize, usize), least: f64, random: &mut Random) -> Plane {
     let angle = random.between(0.0, TAU);
     let (sin, cos) = libm::sincos(angle);
     let (half_x, half_y) = (width as f64 / 2.0, height as f64 / 2.0);
@@ -91,19 +91,24 @@ pub(crate) fn reflections(cover: &Plane, strength: Strength, random: &mut Random
     )
 }
 
-/// On squared paper.
-pub(crate) fn squared(cover: &Plane, strength: Strength, random: &mut Random) -> Sheet {
-    let (width, height) = (cover.width, cover.height);
+/// How much of each pixel the lines of a squared paper cover.
+pub(crate) fn rules((width, height): (usize, usize), random: &mut Random) -> Plane {
     let angle = random.between(-0.012, 0.012);
     let start = (random.between(0.0, SQUARE_PX), random.between(0.0, SQUARE_PX));
     let rule = |place: f64| {
         let away = libm::fabs(place - SQUARE_PX * libm::round(place / SQUARE_PX));
         (RULE_PX / 2.0 + 0.5 - away).clamp(0.0, 1.0)
     };
-    let ruling = Plane::from_fn(width, height, |x, y| {
+    Plane::from_fn(width, height, |x, y| {
         let (x, y) = turned((x, y), angle, start);
         rule(x).max(rule(y))
-    });
+    })
+}
+
+/// On squared paper.
+pub(crate) fn squared(cover: &Plane, strength: Strength, random: &mut Random) -> Sheet {
+    let (width, height) = (cover.width, cover.height);
+    let ruling = rules((width, height), random);
     let contrast = p::SQUARED_LEVEL.at(strength);
     // Pale blue: red goes most.
     let [red, green, blue] = PAPER;

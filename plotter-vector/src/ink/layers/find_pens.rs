@@ -27,9 +27,9 @@ const LEAST_CONTRAST: f64 = 0.08;
 /// A pixel is wholly a pen's from this share on.
 pub(super) const WHOLE: f64 = 0.75;
 /// Least number of pixels that are wholly a pen's.
-const LEAST_PIXELS: f64 = 12.0;
+pub(super) const LEAST_PIXELS: f64 = 12.0;
 /// Least share of the ink that is wholly a pen's: a short word in another colour.
-const LEAST_SHARE: f64 = 0.003;
+pub(super) const LEAST_SHARE: f64 = 0.003;
 /// The same for a colour that two other pens make where they cross.
 const LEAST_SHARE_OF_MIXTURE: f64 = 0.01;
 /// Least share that either pen has in a mixture of two; with less it is the other pen.
@@ -51,14 +51,21 @@ pub(super) fn ink_contrast(histogram: &Histogram) -> f64 {
 }
 
 /// The lines of the pens, the darkest first: `count` of them, or fewer when there are no more; `None` finds
-/// as many as are distinct and draw something.
-pub(super) fn find(histogram: &Histogram, count: Option<usize>, table: &OklabTable) -> Vec<MixingLine> {
+/// as many as are distinct and draw something. Those of `cores`, the largest first, come before all others.
+pub(super) fn find(
+    histogram: &Histogram,
+    cores: Vec<MixingLine>,
+    count: Option<usize>,
+    table: &OklabTable,
+) -> Vec<MixingLine> {
     let ink = most_frequent_ink(histogram);
-    let mut lines: Vec<MixingLine> = Vec::new();
-    let candidates = candidates(histogram, &ink, table);
-    let mut explained = vec![false; ink.len()];
-    let total = weight(&ink);
     let most = count.unwrap_or(MAX_PENS).min(MAX_PENS);
+    let mut lines = cores;
+    lines.truncate(most);
+    let candidates = candidates(histogram, &ink, table);
+    let on_a_line = |entry: &Entry| lines.iter().any(|line| line.distance(entry.mean, entry.oklab) <= SAME);
+    let mut explained: Vec<bool> = ink.iter().map(on_a_line).collect();
+    let total = weight(&ink);
     let mut tried = vec![false; candidates.len()];
     while lines.len() < most {
         let gain = |candidate: &Candidate| -> f64 {
@@ -107,9 +114,13 @@ pub(super) fn find(histogram: &Histogram, count: Option<usize>, table: &OklabTab
 fn drop_rims(lines: &mut Vec<MixingLine>, table: &OklabTable) {
     let mut kept: Vec<MixingLine> = Vec::with_capacity(lines.len());
     lines.sort_by(|a, b| a.pen_oklab().l.total_cmp(&b.pen_oklab().l).then(a.pen().cmp(&b.pen())));
+    let cores: Vec<MixingLine> = lines.iter().filter(|line| line.has_core()).cloned().collect();
     for line in lines.drain(..) {
         let on_line = |other: &MixingLine| other.distance(line.pen(), table.oklab(line.pen())) <= SAME;
-        if !kept.iter().any(on_line) {
+        // Near black the line is bent: what is as near to the pen itself is that pen.
+        let is_same =
+            |core: &MixingLine| on_line(core) || core.pen_oklab().distance(line.pen_oklab()) <= 1.5 * SAME;
+        if line.has_core() || !kept.iter().any(on_line) && !cores.iter().any(is_same) {
             kept.push(line);
         }
     }
@@ -218,7 +229,14 @@ fn move_lines(lines: &mut [MixingLine], ink: &[Entry], paper: Rgb, table: &Oklab
             own.push((line.share(entry.mean), *entry));
         }
     }
-    for (line, mut own) in lines.iter_mut().zip(own) {
+    // Rims of a pen have a paler one's colour: its own is that of its cores.
+    let mixed: Vec<bool> = lines
+        .iter()
+        .map(|line| {
+            line.has_core() && lines.iter().any(|other| line.is_rim_of(other) || other.is_rim_of(line))
+        })
+        .collect();
+    for ((line, mut own), _) in lines.iter_mut().zip(own).zip(mixed).filter(|(_, mixed)| !mixed) {
         own.sort_by(|a, b| b.0.total_cmp(&a.0));
         let all: u64 = own.iter().map(|(_, entry)| u64::from(entry.count)).sum();
         if all < 12 {
@@ -240,7 +258,7 @@ fn move_lines(lines: &mut [MixingLine], ink: &[Entry], paper: Rgb, table: &Oklab
         });
         let moved = Rgb(mean);
         if moved != paper && table.oklab(moved).distance(line.pen_oklab()) <= farthest {
-            *line = MixingLine::new(paper, moved, table);
+            *line = line.moved(paper, moved, table);
         }
     }
 }

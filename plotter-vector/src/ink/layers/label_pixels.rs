@@ -19,8 +19,15 @@ use crate::{
 const CLEARLY: f64 = 0.03;
 /// How far a whole pixel may be from its line, in Oklab.
 const STRAY: f64 = 2.0 * SAME;
+/// How far a colour may be from the line of a pen that has made it, in Oklab, where the pens around are known.
+const MADE: f64 = 1.5 * SAME;
 /// Shares from here on may be ink of a pixel that two pens share.
 const LEAST_SHARE: f64 = 0.4;
+
+/// How far rims reach beyond whole pixels, px.
+const RIM_PX: u32 = 2;
+/// Around a core, px, ink is its pen's, or that of others with cores as near: about two widths of a line.
+const AROUND_CORES_PX: u32 = 6;
 
 /// What the colour of a bin says.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,11 +52,13 @@ struct BinLines {
     nearest: u8,
 }
 
-/// The ink of each pen.
+/// The ink of each pen. `cores` are those of each, in the middle of its lines: near them a pixel is of no other
+/// pen.
 pub(super) fn label(
     picture: &Colour,
     histogram: &Histogram,
     lines: &[MixingLine],
+    cores: &[Bitmap],
     table: &OklabTable,
 ) -> Vec<Bitmap> {
     let (kinds, places) = tables(histogram, lines);
@@ -82,12 +91,17 @@ pub(super) fn label(
             }
         }
     }
-    let mut near = Vec::new();
+    let (mut near, mut around) = (Vec::new(), Vec::new());
     if lines.len() > 1 {
+        around.extend(cores.iter().map(|cores| grown_by(cores, AROUND_CORES_PX)));
+        let judge = Judge { lines, near: &[], around: &around, places: &places, table };
+        judge.keep_near_cores(&mut ink, &mut rims, picture);
+        keep_off_rims(&mut ink, &mut rims, lines);
         keep_supported(&mut ink, &mut rims);
-        near.extend(ink.iter().map(|whole| grown(&grown(whole))));
+        let whole = ink.iter().zip(cores).map(|(whole, cores)| whole.clone().united(cores));
+        near.extend(whole.map(|whole| grown_by(&whole, RIM_PX)));
     }
-    let judge = Judge { lines, near: &near, places: &places, table };
+    let judge = Judge { lines, near: &near, around: &around, places: &places, table };
     for at in rims.ink() {
         let pen = picture.pixel(at.x, at.y).and_then(|colour| judge.pen(at, colour));
         if let Some(bitmap) = pen.and_then(|pen| ink.get_mut(pen)) {
@@ -116,7 +130,8 @@ fn tables(histogram: &Histogram, lines: &[MixingLine]) -> (Vec<Kind>, Vec<BinLin
             let distance = line.distance(entry.mean, entry.oklab);
             on_lines |= u16::from(distance <= SAME) << other;
             by_lines |= u16::from(distance <= STRAY) << other;
-            clear &= other == pen || distance >= beside + CLEARLY;
+            let is_rim = lines.get(pen).is_some_and(|own| own.is_rim_of(line));
+            clear &= other == pen || is_rim || distance >= beside + CLEARLY;
         }
         let share = lines.get(pen).map_or(0.0, |line| line.share(entry.mean));
         let whole = share >= WHOLE && (lines.len() == 1 || (clear && beside <= STRAY));
@@ -129,6 +144,49 @@ fn tables(histogram: &Histogram, lines: &[MixingLine]) -> (Vec<Kind>, Vec<BinLin
         }
     }
     (kinds, places)
+}
+
+/// Ink grown by so many pixels.
+fn grown_by(ink: &Bitmap, px: u32) -> Bitmap {
+    (0..px).fold(ink.clone(), |ink, _| grown(&ink))
+}
+
+/// The pixels of one picture that are not ink of another one.
+fn without(ink: &Bitmap, other: &Bitmap) -> Bitmap {
+    let mut rest = ink.clone();
+    for y in 0..rest.height() {
+        rest.row_mut(y).iter_mut().zip(other.row(y)).for_each(|(bits, other)| *bits &= !other);
+    }
+    rest
+}
+
+/// The pixels that both pictures have as ink.
+fn shared(ink: &Bitmap, other: &Bitmap) -> Bitmap {
+    without(ink, &without(ink, other))
+}
+
+/// Moves pixels from a pen's whole ones to the rims.
+fn move_to_rims(whole: &mut Bitmap, rims: &mut Bitmap, kept: Bitmap) {
+    let removed = without(whole, &kept);
+    *rims = core::mem::replace(rims, Bitmap::empty()).united(&removed);
+    *whole = kept;
+}
+
+/// Makes rims of the whole pixels of a pen beside another one whose rims have its colour.
+fn keep_off_rims(whole: &mut [Bitmap], rims: &mut Bitmap, lines: &[MixingLine]) {
+    let all = whole.to_vec();
+    for ((pale, line), own) in lines.iter().enumerate().zip(whole) {
+        let darker = lines
+            .iter()
+            .zip(&all)
+            .enumerate()
+            .filter(|(other, (darker, _))| *other != pale && line.is_rim_of(darker));
+        for (_, (_, darker)) in darker {
+            let apart = without(own, &grown_by(darker, RIM_PX));
+            let kept = shared(own, &grown(&apart));
+            move_to_rims(own, rims, kept);
+        }
+    }
 }
 
 /// Makes rims of the whole pixels that have fewer than three neighbours of their own pen: a few pixels where
@@ -174,6 +232,8 @@ struct Judge<'a> {
     lines: &'a [MixingLine],
     /// Within 2 px of the whole pixels of each pen; none when there is one pen.
     near: &'a [Bitmap],
+    /// Within some px of the cores of each pen.
+    around: &'a [Bitmap],
     places: &'a [BinLines],
     table: &'a OklabTable,
 }
@@ -181,10 +241,29 @@ struct Judge<'a> {
 impl Judge<'_> {
     /// The pen of a rim or mixture; `None` where more than half of it is paper.
     fn pen(&self, at: Pixel, colour: Rgb) -> Option<usize> {
+        self.likely_pen(at, colour).or_else(|| {
+            // What is wholly a pen's colour is ink, even where its pen is not likely; not so the rim of another.
+            let nearest = usize::from(self.places.get(bin(colour.0))?.nearest);
+            let line = self.lines.get(nearest).filter(|line| line.share(colour) >= WHOLE)?;
+            let is_rim = self.lines.iter().any(|other| line.is_rim_of(other));
+            (!is_rim && self.lines.len() > 1).then_some(nearest)
+        })
+    }
+
+    /// The same, of the pens whose ink is near.
+    fn likely_pen(&self, at: Pixel, colour: Rgb) -> Option<usize> {
         let place = self.places.get(bin(colour.0)).copied().unwrap_or_default();
         let nearest = usize::from(place.nearest);
         let near = self.near.iter().enumerate().filter(|(_, near)| near.get(at));
         let near: u16 = near.map(|(pen, _)| 1 << pen).sum();
+        // The whole pixels near are likely, too; what none of these can have made is another one's.
+        let likely = self.likely(at) | near;
+        let likely = if self.can_make(likely, colour) { likely } else { u16::MAX };
+        let nearest = if likely & 1 << nearest == 0 {
+            self.closest(likely, colour).unwrap_or(nearest)
+        } else {
+            nearest
+        };
         // A rim of a pen beside it.
         let rim_of = near & place.on_lines;
         let alone = match rim_of.count_ones() {
@@ -206,11 +285,43 @@ impl Judge<'_> {
             if let Some(pen) = self.closest(near & place.by_lines, colour) {
                 return self.half(pen, colour);
             }
-            if let Some((pen, share)) = self.mixed(near, u16::MAX, colour) {
+            if let Some((pen, share)) = self.mixed(near, likely, colour) {
                 return (share >= 0.5).then_some(pen);
             }
         }
         self.half(nearest, colour)
+    }
+
+    /// The pens that have cores around a place; all of them where none has.
+    fn likely(&self, at: Pixel) -> u16 {
+        let around = self.around.iter().enumerate().filter(|(_, around)| around.get(at));
+        let around: u16 = around.map(|(pen, _)| 1 << pen).sum();
+        if around == 0 { u16::MAX } else { around }
+    }
+
+    /// Makes rims of the whole pixels that have cores of other pens around them and none of their own, where
+    /// these pens can have made their colour.
+    fn keep_near_cores(&self, whole: &mut [Bitmap], rims: &mut Bitmap, picture: &Colour) {
+        for (pen, whole) in whole.iter_mut().enumerate() {
+            let strange = whole.ink().filter(|at| {
+                let likely = self.likely(*at);
+                likely & 1 << pen == 0
+                    && picture.pixel(at.x, at.y).is_some_and(|colour| self.can_make(likely, colour))
+            });
+            let strange: Vec<Pixel> = strange.collect();
+            for at in strange {
+                whole.set(at, false);
+                rims.set(at, true);
+            }
+        }
+    }
+
+    /// Whether one of these pens, or two of them where they meet, can have made a colour.
+    fn can_make(&self, pens: u16, colour: Rgb) -> bool {
+        let oklab = self.table.oklab(colour);
+        let own = |line: &MixingLine| line.distance(colour, oklab) <= MADE;
+        self.lines.iter().enumerate().any(|(pen, line)| pens & 1 << pen != 0 && own(line))
+            || self.mixed(pens, pens, colour).is_some()
     }
 
     /// The pen, if it covers half of the pixel.
@@ -221,8 +332,19 @@ impl Judge<'_> {
     /// The pen of a set whose line is nearest.
     fn closest(&self, pens: u16, colour: Rgb) -> Option<usize> {
         let oklab = self.table.oklab(colour);
+        let covers = |pen: usize| self.lines.get(pen).is_some_and(|line| line.covers_half(colour));
+        // Of a pen and one that has the colour of its rims, the one that covers half of the pixel.
+        let hidden = |pen: usize| {
+            (0..self.lines.len()).any(|other| {
+                let both = self.lines.get(pen).zip(self.lines.get(other)).filter(|_| pens & 1 << other != 0);
+                both.is_some_and(|(line, other_line)| {
+                    line.is_rim_of(other_line) && covers(other)
+                        || other_line.is_rim_of(line) && !covers(pen) && covers(other)
+                })
+            })
+        };
         let distance = |pen: &usize| self.lines.get(*pen).map_or(1.0, |line| line.distance(colour, oklab));
-        let pens = (0..self.lines.len()).filter(|pen| pens & 1 << pen != 0);
+        let pens = (0..self.lines.len()).filter(|pen| pens & 1 << pen != 0 && !hidden(*pen));
         pens.min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 

@@ -8,6 +8,11 @@ const SAMPLES: i32 = 16;
 /// How far beyond the pen's own colour the line goes, of its length: ink where the pen went twice is darker.
 const BEYOND: f64 = 1.25;
 
+/// A pen whose colour another one's rims have covers less than this share of what that one does, and lies this
+/// near to its line, in Oklab: half as far again as a colour that belongs to the line.
+const PALER: f64 = 0.75;
+const RIM: f64 = 0.09;
+
 /// The colours of a pixel that a pen covers from not at all to wholly: p + s·(c − p) for paper p, pen c and
 /// the share s, in encoded sRGB, as drawing programs and scanners' sharpened rims have it.
 #[derive(Clone, Debug)]
@@ -19,6 +24,8 @@ pub(super) struct MixingLine {
     pen: Rgb,
     /// The colours at 0, 1/16, … to 20/16 of the way.
     samples: Vec<Oklab>,
+    /// Whether the pen was found in the middle of lines.
+    has_core: bool,
 }
 
 impl MixingLine {
@@ -36,7 +43,22 @@ impl MixingLine {
             table.oklab(Rgb(core::array::from_fn(at)))
         };
         let samples = (0..=SAMPLES + SAMPLES / 4).map(sample).collect();
-        Self { paper: from, way, square, pen, samples }
+        Self { paper: from, way, square, pen, samples, has_core: false }
+    }
+
+    /// The same, of a pen that was found in the middle of lines.
+    pub(super) fn with_core(self) -> Self {
+        Self { has_core: true, ..self }
+    }
+
+    /// The line to another colour of the same pen.
+    pub(super) fn moved(&self, paper: Rgb, pen: Rgb, table: &OklabTable) -> Self {
+        Self { has_core: self.has_core, ..Self::new(paper, pen, table) }
+    }
+
+    /// Whether the pen was found in the middle of lines.
+    pub(super) fn has_core(&self) -> bool {
+        self.has_core
     }
 
     /// The pen's colour, where the share is 1.
@@ -53,6 +75,12 @@ impl MixingLine {
     fn along(&self, Rgb(colour): Rgb) -> i32 {
         let [red, green, blue] = colour.map(i32::from);
         dot([red - self.paper[0], green - self.paper[1], blue - self.paper[2]], self.way)
+    }
+
+    /// Whether this pen's colour is one that the other leaves where it covers a pixel in part.
+    pub(super) fn is_rim_of(&self, other: &Self) -> bool {
+        let own = self.pen();
+        other.share(own) < PALER && other.distance(own, self.pen_oklab()) <= RIM
     }
 
     /// Whether the pen covers half or more of a pixel of this colour.
@@ -81,7 +109,12 @@ impl MixingLine {
 
     /// How far a colour lies beside the line, in Oklab. `oklab` is the colour in Oklab.
     pub(super) fn distance(&self, colour: Rgb, oklab: Oklab) -> f64 {
-        let at = self.share(colour).clamp(0.0, BEYOND) * f64::from(SAMPLES);
+        self.distance_from(self.share(colour), oklab)
+    }
+
+    /// How far a colour is from the place of the line where the pen covers this share, in Oklab.
+    pub(super) fn distance_from(&self, share: f64, oklab: Oklab) -> f64 {
+        let at = share.clamp(0.0, BEYOND) * f64::from(SAMPLES);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0..=20")]
         let index = at as usize;
         let rest = at - f64::from(u32::try_from(index).unwrap_or(0));

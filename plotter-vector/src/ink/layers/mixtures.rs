@@ -12,6 +12,9 @@ use crate::picture::oklab::OklabTable;
 /// Least share of a pen's ink that lies apart from the pens that could make its colour.
 const LEAST_APART: f64 = 0.25;
 
+/// A pen without a line of its own has at least so many pixels: others' rims have some of any colour.
+const LEAST_INK: u64 = 12;
+
 /// The lines that are left, or `None` when all are pens. `ink` is the ink of each.
 pub(super) fn without_mixtures(
     lines: &[MixingLine],
@@ -19,6 +22,9 @@ pub(super) fn without_mixtures(
     table: &OklabTable,
 ) -> Option<Vec<MixingLine>> {
     let is_pen = |(index, (line, own)): (usize, (&MixingLine, &Bitmap))| {
+        if lines.len() > 1 && !line.has_core() && own.count() < LEAST_INK {
+            return false;
+        }
         let makers = makers(lines, index, line.pen(), table);
         if makers == 0 {
             return true;

@@ -1,11 +1,15 @@
 //! [`Pens`]: from a picture in colour to the ink of each pen, [`Layers`].
 
 mod bridge_gaps;
+mod cores;
 mod find_pens;
 mod histogram;
 mod label_pixels;
+mod light;
 mod mixing_line;
 mod mixtures;
+mod ruling;
+mod unassigned;
 
 use crate::picture::oklab::OklabTable;
 use crate::{
@@ -14,11 +18,16 @@ use crate::{
 };
 use core::fmt;
 use histogram::Histogram;
+use light::Light;
 use mixing_line::MixingLine;
+pub use unassigned::Unassigned;
+use unassigned::unassigned;
 
 /// Which pens have drawn a picture. The default finds them.
 ///
-/// The paper is the most frequent colour. A pixel is ink of a pen when the pen covers half of it or more on
+/// The paper is the most frequent colour; where the light is uneven, as in a photograph, all colours are first
+/// divided by that of the paper around. A pen is told by the middle of its lines, where its colour is neither
+/// mixed with the paper nor with another pen; around such cores ink belongs to their pens. A pixel is ink of a pen when the pen covers half of it or more on
 /// the way from the paper's colour to the pen's own. Rims, which are mixtures with the paper, go to the pen
 /// that they are a rim of by their direction from the paper, not to the nearest colour: the grey rim of a
 /// black stroke is black. Where two pens meet, a mixed pixel goes to the one that has more of it.
@@ -36,9 +45,10 @@ use mixing_line::MixingLine;
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Pens {
-    /// As many as there are: colours whose lines to the paper differ and that draw at least 0.3 % of the ink.
-    /// Greys are one pen, and so are a colour and a paler one of the same hue: to tell these apart, give a
-    /// palette. Without ink, one black pen.
+    /// As many as there are: colours that differ in the middle of lines, or whose lines to the paper differ, and
+    /// that draw at least 0.3 % of the ink. A colour and a paler one of the same hue, as black and pencil, are
+    /// two pens where the paler one has less than seven tenths of the contrast and nothing lies between; else
+    /// they are one, pressed harder and less. The ruling of squared paper is none. Without ink, one black pen.
     #[default]
     Found,
     /// This many, from 1 to [`MAX_PENS`]; fewer when the picture has fewer.
@@ -74,12 +84,17 @@ impl core::error::Error for PensError {}
 impl Pens {
     /// Shares the ink of a picture among the pens. Found pens are numbered from 1, the darkest first.
     ///
-    /// Takes one bit a pixel and pen three times over, and 1.5 MB. The result depends on nothing but the
+    /// Takes one bit a pixel and pen five times over, a byte a pixel, three more in uneven light, and 2 MB. The result depends on nothing but the
     /// picture.
     ///
     /// # Errors
     /// [`PensError`].
     pub fn separate(&self, picture: &Colour) -> Result<Layers, PensError> {
+        self.shared_out(picture, false)
+    }
+
+    /// The same; `keeps_ruling` takes the ruling of paper for a pen's.
+    pub(crate) fn shared_out(&self, picture: &Colour, keeps_ruling: bool) -> Result<Layers, PensError> {
         let count = match self {
             Self::Count(count) if !(1..=MAX_PENS).contains(count) => {
                 return Err(PensError::Count { count: *count });
@@ -88,17 +103,41 @@ impl Pens {
             Self::Found | Self::Given(_) => None,
         };
         let table = OklabTable::new();
+        let light = Light::of(picture);
+        let evened = light.as_ref().map(|light| light.evened(picture));
+        let picture = evened.as_ref().unwrap_or(picture);
         let histogram = Histogram::new(picture, &table);
-        let mut lines = match self {
+        let cores = cores::cores(picture, &histogram);
+        let find = |count: Option<usize>| match self {
             Self::Given(palette) => find_pens::seen(&histogram, palette, &table),
-            Self::Found | Self::Count(_) => find_pens::find(&histogram, count, &table),
+            Self::Found | Self::Count(_) => {
+                find_pens::find(&histogram, cores::pens(&cores, histogram.paper, &table), count, &table)
+            }
         };
-        let mut ink = label_pixels::label(picture, &histogram, &lines, &table);
+        let size = (picture.width(), picture.height());
+        let label = |lines: &[MixingLine]| {
+            let seeds = cores::seeds(&cores, lines, size, &table);
+            label_pixels::label(picture, &histogram, lines, &seeds, &table)
+        };
+        let mut lines = find(count);
+        let mut ink = label(&lines);
         if *self == Self::Found
             && let Some(pens) = mixtures::without_mixtures(&lines, &ink, &table)
         {
             lines = pens;
-            ink = label_pixels::label(picture, &histogram, &lines, &table);
+            ink = label(&lines);
+        }
+        let mut ruling = None;
+        if !matches!(self, Self::Given(_)) && !keeps_ruling {
+            let paper = table.oklab(histogram.paper);
+            let mut found = ruling::ruling(&lines, &ink, paper);
+            if let (Some(_), Some(count)) = (found, count) {
+                // It has taken the place of a pen.
+                lines = find(Some(count + 1));
+                ink = label(&lines);
+                found = ruling::ruling(&lines, &ink, paper);
+            }
+            ruling = found.map(|found| Ruling { colour: lines.remove(found).pen(), ink: ink.remove(found) });
         }
         let palette = match self {
             Self::Given(palette) => palette.clone(),
@@ -108,7 +147,7 @@ impl Pens {
         // A sheet without ink still has its one pen.
         let empty = || Bitmap::new(picture.width(), picture.height()).unwrap_or_else(|_| Bitmap::empty());
         ink.resize_with(palette.pens().len(), empty);
-        Ok(Layers { paper: histogram.paper, palette, lines, ink })
+        Ok(Layers { paper: histogram.paper, palette, lines, ink, light, ruling })
     }
 }
 
@@ -121,6 +160,16 @@ pub struct Layers {
     /// From the paper to each pen's colour on the picture; none on a sheet without ink.
     lines: Vec<MixingLine>,
     ink: Vec<Bitmap>,
+    /// The light on the picture, where it is uneven.
+    light: Option<Light>,
+    /// The lines of squared paper, which no pen drew.
+    ruling: Option<Ruling>,
+}
+
+#[derive(Clone, Debug)]
+struct Ruling {
+    colour: Rgb,
+    ink: Bitmap,
 }
 
 impl Layers {
@@ -178,7 +227,10 @@ impl Layers {
                 (false, true) => 0,
                 _ => {
                     let line = self.lines.get(index);
-                    picture.pixel(at.x, at.y).zip(line).map_or(0, |(colour, line)| line.share_255(colour))
+                    let even =
+                        |colour| self.light.as_ref().map_or(colour, |light| light.even((at.x, at.y), colour));
+                    let colour = picture.pixel(at.x, at.y).map(even);
+                    colour.zip(line).map_or(0, |(colour, line)| line.share_255(colour))
                 }
             };
             let place = at.y as usize * picture.width() as usize + at.x as usize;
@@ -187,6 +239,17 @@ impl Layers {
             }
         }
         Some(Gray::of_checked_size(picture.width(), picture.height(), levels))
+    }
+
+    /// The colour of the ruling of squared or ruled paper, which is left out.
+    #[must_use]
+    pub fn ruling(&self) -> Option<Rgb> {
+        self.ruling.as_ref().map(|ruling| ruling.colour)
+    }
+
+    /// What of the ink no pen got; the ruling is no pen's.
+    pub(crate) fn unassigned(&self, ink: &Bitmap) -> Option<Unassigned> {
+        unassigned(ink, self.ink.iter().chain(self.ruling.as_ref().map(|ruling| &ruling.ink)))
     }
 
     /// The ink of all other pens; nothing without other pens.
