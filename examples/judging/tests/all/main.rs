@@ -16,3 +16,4 @@ mod degraded;
 mod judge_command;
 mod judged_corpus;
 mod lost_ink;
+mod paper;
