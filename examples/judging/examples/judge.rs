@@ -4,7 +4,8 @@
 //! any other program, and this says how far the result and those strokes are from each other: on the average,
 //! at the worst place, at the junctions, how much is missing and how much is there that should not be. Look
 //! at the junctions first: there programs differ most. Of a picture of `degrade_corpus` that shows its sheet
-//! askew, the result is first put back onto the sheet.
+//! askew, the result is first put back onto the sheet; one that was traced with `--paper` is put back into
+//! the picture before, by the homography that its SVG tells, or the report beside its HPGL.
 //!
 //! Without a file it draws the corpus, traces it with ours as it is set from the start, and prints a line for
 //! each picture:
@@ -19,7 +20,7 @@
 use clap::Parser;
 use plotter_examples::shared::{at, is_standard, print, read_file, run, write_output};
 use plotter_judging::corpus::Truth;
-use plotter_judging::{JudgedDrawing, Judgement, judged_corpus};
+use plotter_judging::{JudgedDrawing, Judgement, StraightenedPaper, judged_corpus};
 use plotter_vector::{Bitmap, Vectorizer, decode};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -46,6 +47,10 @@ struct Arguments {
     /// Size of a pixel in HPGL, mm
     #[arg(long, value_name = "MM", default_value_t = 0.1, allow_negative_numbers = true)]
     mm_per_px: f64,
+    /// Of HPGL that was traced with `--paper`: the report of `trace`, which tells where the sheet lies in
+    /// the picture; an SVG tells it itself
+    #[arg(long, value_name = "F.json", requires = "drawing")]
+    paper: Option<PathBuf>,
     /// Writes the figures as JSON; - is the standard output, in place of the table
     #[arg(long, value_name = "F.json")]
     report: Option<PathBuf>,
@@ -78,12 +83,23 @@ fn judged(file: &Path, truth_file: &Path, arguments: &Arguments) -> Result<(Stri
     let bytes = read_file(file)?;
     let size = truth.view.map_or((truth.width, truth.height), |view| (view.width, view.height));
     let is_svg = bytes.iter().find(|byte| !byte.is_ascii_whitespace() && **byte < 0x80) == Some(&b'<');
+    let paper = match &arguments.paper {
+        Some(report) => {
+            Some(StraightenedPaper::in_report(&read_file(report)?).map_err(|error| at(report, &error))?)
+        }
+        None if is_svg => StraightenedPaper::in_svg(&bytes).map_err(|error| at(file, &error))?,
+        None => None,
+    };
+    let drawn_px = paper.map_or(size, |paper| paper.size_px);
     let read = if is_svg {
-        JudgedDrawing::from_svg(&bytes, size)
+        JudgedDrawing::from_svg(&bytes, drawn_px)
     } else {
-        JudgedDrawing::from_hpgl(&bytes, size, arguments.mm_per_px)
+        JudgedDrawing::from_hpgl(&bytes, drawn_px, arguments.mm_per_px)
     };
     let mut read = read.map_err(|error| at(file, &error))?;
+    if let Some(paper) = &paper {
+        read = read.on_picture(paper, size).map_err(|error| at(file, &error))?;
+    }
     if let Some(view) = &truth.view {
         if let Some(picture) = &arguments.picture {
             return Err(at(picture, &"is seen askew: the distance of its ink would be in other pixels"));

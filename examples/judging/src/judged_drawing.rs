@@ -1,5 +1,6 @@
 //! [`JudgedDrawing`]: a vector result on the picture that it was made from.
 
+use crate::StraightenedPaper;
 use crate::corpus::View;
 use plotter_examples::shared::usual_colour;
 use plotter_motion::{PlotOp, Point, hpgl, toolpath::chords};
@@ -114,16 +115,39 @@ impl JudgedDrawing {
     /// # Errors
     ///
     /// A stroke lies beyond the horizon, where no drawing is.
-    pub fn flattened(&self, view: &View, (width_px, height_px): (u32, u32)) -> Result<Self, String> {
+    pub fn flattened(&self, view: &View, size_px: (u32, u32)) -> Result<Self, String> {
         let back = view.homography.inverse().ok_or("the view has no inverse")?;
+        self.moved(size_px, |at| {
+            // The view counts from pixel centres.
+            let flat = back.apply(PxPoint::new(at.x - CENTRE_PX, at.y - CENTRE_PX))?;
+            Some(PxPoint::new(flat.x + CENTRE_PX, flat.y + CENTRE_PX))
+        })
+    }
+
+    /// A result on a sheet that was straightened out of a picture of this size, in the picture's own pixels.
+    ///
+    /// # Errors
+    ///
+    /// The sheet is of another picture, or a stroke lies beyond its horizon.
+    pub fn on_picture(&self, paper: &StraightenedPaper, size_px: (u32, u32)) -> Result<Self, String> {
+        if paper.picture_px != size_px {
+            let ((width, height), (true_width, true_height)) = (paper.picture_px, size_px);
+            return Err(format!(
+                "is of a sheet out of a picture of {width} x {height} px, but the truth is of one of \
+                 {true_width} x {true_height} px"
+            ));
+        }
+        self.moved(size_px, |at| paper.homography.apply(at))
+    }
+
+    fn moved(
+        &self,
+        (width_px, height_px): (u32, u32),
+        to: impl Fn(PxPoint) -> Option<PxPoint>,
+    ) -> Result<Self, String> {
         let mut drawing = Drawing::new(width_px, height_px);
         for (index, stroke) in self.drawing.strokes().enumerate() {
-            // The view counts from pixel centres.
-            let flat = |at: &PxPoint| {
-                let (x, y) = back.apply((at.x - CENTRE_PX, at.y - CENTRE_PX))?;
-                Some(PxPoint::new(x + CENTRE_PX, y + CENTRE_PX))
-            };
-            let places: Option<Vec<PxPoint>> = stroke.iter().map(flat).collect();
+            let places: Option<Vec<PxPoint>> = stroke.iter().map(|at| to(*at)).collect();
             let places = places.ok_or_else(|| {
                 format!("stroke {index} lies beyond the horizon of the sheet that the picture shows")
             })?;
@@ -156,8 +180,7 @@ impl JudgedDrawing {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Homography;
-    use plotter_vector::{Scale, hpgl, svg};
+    use plotter_vector::{Scale, hpgl, picture::Homography, svg};
 
     /// Three decimals of SVG, in single precision.
     const SVG_PX: f64 = 1e-3;

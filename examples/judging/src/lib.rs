@@ -6,15 +6,15 @@
 
 pub mod corpus;
 pub mod degraded;
-mod homography;
 mod judged_corpus;
 mod judged_drawing;
 mod judgement;
 mod near_lines;
 pub mod pens;
+mod straightened_paper;
 
-pub use homography::Homography;
 pub use judged_corpus::judged_corpus;
 pub use judged_drawing::JudgedDrawing;
 pub use judgement::{Judgement, JunctionFigures};
 pub use near_lines::{LinePiece, NearLines};
+pub use straightened_paper::StraightenedPaper;

@@ -4,7 +4,7 @@ use super::figures::{Report, picture, report_refusal};
 use super::plan::{Refusal, broken_lines, plan};
 use super::scan::Scan;
 use crate::max_error::follow;
-use crate::shared::{SizeOptions, Telling, WorkShown, at, read_file, run, write_file};
+use crate::shared::{PaperOption, SizeOptions, Telling, WorkShown, at, read_file, run, write_file};
 use clap::Parser;
 use plotter_motion::{Machine, MachineConfig};
 use std::path::PathBuf;
@@ -33,6 +33,8 @@ pub struct MaxErrorCommand {
     pub(super) machine: Option<PathBuf>,
     #[command(flatten)]
     pub(super) size: SizeOptions,
+    #[command(flatten)]
+    pub(super) paper: PaperOption,
     /// Of a TIFF with several pictures, which; 1 is the first
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) page: u32,

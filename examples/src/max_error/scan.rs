@@ -40,10 +40,22 @@ impl Scan {
             Some(path) => (read_file(path)?, path.as_path()),
             None => (include_bytes!("../../data/flag.png").to_vec(), Path::new("flag.png")),
         };
-        let scan = FileRows::of_page(Cursor::new(&bytes), args.page).map_err(|error| at(path, &error))?;
-        let (scale, size) = fit_picture(scan.notes(), &args.size, machine)?;
+        // What is asked for and not found would be promised of another picture: nothing is drawn.
+        let straightened = args.paper.straightened(&bytes, args.page, false, &args.size);
+        let straightened = straightened.map_err(|error| at(path, &error.told()))?;
+        let (bytes, page) = match &straightened {
+            Some(found) => (&found.file, 1),
+            None => (&bytes, args.page),
+        };
+        let scan = FileRows::of_page(Cursor::new(bytes), page).map_err(|error| at(path, &error))?;
+        let (notes, asked) = match &straightened {
+            Some(found) => (&found.notes, found.paper.sized(&args.size)),
+            None => (scan.notes(), args.size),
+        };
+        let (scale, size) = fit_picture(notes, &asked, machine)?;
         let mut told = vec![("size", size)];
-        told.extend(told_notes(scan.notes()));
+        told.extend(told_notes(notes));
+        told.extend(straightened.iter().flat_map(|found| found.paper.told()));
         let picture = scan.into_gray().map_err(|error| at(path, &error))?;
         // Straight lines: what is followed is what was measured.
         let vectorize = VectorizeConfig { arcs: false, curves: false, ..machine.config().vectorize };

@@ -4,8 +4,8 @@ use super::figures::Summary;
 use super::pictures::Pictures;
 use super::recording::{record, replay};
 use crate::shared::{
-    IN_MACHINE_FILE, SizeOptions, Telling, at, doubted, fit_picture, html_page, lost_ink, read_file, run,
-    told_ink, told_notes, vectorized, vectorizer, write_file,
+    IN_MACHINE_FILE, PaperOption, SizeOptions, Telling, at, doubted, fit_picture, html_page, lost_ink,
+    read_file, run, told_ink, told_notes, vectorized, vectorizer, write_file,
 };
 use clap::{Parser, ValueEnum};
 use plotter_motion::{
@@ -16,7 +16,7 @@ use plotter_motion::{
     toolpath::{OutOfReach, targets},
 };
 use plotter_replay::compare::Ways;
-use plotter_vector::{Algorithm, Drawing, Scale, TracedSheet, Vectorizer, picture::FileNotes};
+use plotter_vector::{Algorithm, Drawing, Scale, TracedSheet, Vectorizer, picture::FileNotes, trace::Prefer};
 use std::fmt::Write as _;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -52,6 +52,8 @@ pub struct PlotCommand {
     algorithm: AlgorithmArg,
     #[command(flatten)]
     size: SizeOptions,
+    #[command(flatten)]
+    paper: PaperOption,
     /// Of a TIFF with several pictures, which; 1 is the first
     #[arg(long, value_name = "N", default_value_t = 1)]
     page: u32,
@@ -246,22 +248,37 @@ struct Plan {
 }
 
 fn trace(args: &PlotCommand, machine: &Machine) -> Result<Plan, String> {
-    let bytes = match &args.image {
+    let mut bytes = match &args.image {
         Some(path) => read_file(path)?,
         None => include_bytes!("../../data/flag.png").to_vec(),
     };
     let path = picture_path(args);
-    let notes = FileNotes::read(Cursor::new(&bytes), args.page).map_err(|error| at(path, &error))?;
-    let (scale, size) = fit_picture(&notes, &args.size, machine)?;
-    let vectorizer = match args.algorithm {
+    let mut notes = FileNotes::read(Cursor::new(&bytes), args.page).map_err(|error| at(path, &error))?;
+    let (mut asked, mut page, mut paper) = (args.size, args.page, None);
+    // A sheet that is asked for and not found would be drawn as nobody meant it: nothing is drawn.
+    let straightened = args.paper.straightened(&bytes, page, false, &asked);
+    if let Some(found) = straightened.map_err(|error| at(path, &error.told()))? {
+        (asked, page) = (found.paper.sized(&asked), 1);
+        (bytes, notes, paper) = (found.file, found.notes, Some(found.paper));
+    }
+    let (scale, size) = fit_picture(&notes, &asked, machine)?;
+    let mut vectorizer = match args.algorithm {
         AlgorithmArg::Published => Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() },
         // One pen, whatever the file says: this machine has no carousel.
         AlgorithmArg::Ours => vectorizer(&machine.config().vectorize, scale.mm_per_px())?,
     };
-    let (traced, notes) = vectorized(&vectorizer, bytes, args.page).map_err(|error| at(path, &error))?;
+    // A photograph's rims are ragged, in even light, too: ink that is bare there is worth no stroke.
+    if paper.is_some() {
+        vectorizer.prefer = Prefer::Strokes;
+    }
+    let (traced, read) = vectorized(&vectorizer, bytes, page).map_err(|error| at(path, &error))?;
     doubted(traced.doubt, IN_MACHINE_FILE).map_err(|error| at(path, &error))?;
     let mut told = vec![("size", size)];
-    told.extend(told_notes(&notes));
+    told.extend(told_notes(if paper.is_some() { &notes } else { &read }));
+    if let Some(paper) = paper {
+        told.extend(paper.told());
+        told.extend(paper.told_ends(&traced.drawing, traced.pen_px));
+    }
     told.extend(told_ink(traced.look, traced.split));
     Ok(Plan { vectorizer, traced, scale, told })
 }

@@ -34,6 +34,9 @@ pub struct SizeOptions {
     /// file says, if a scanner may have written it, else 0.1; drawn by a machine, else 50 mm in width]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub mm_per_px: Option<f64>,
+    /// The same, of a sheet whose size is known.
+    #[arg(skip)]
+    pub paper_mm_per_px: Option<f64>,
 }
 
 /// How large a picture's pixels are on the sheet, and who says so.
@@ -59,8 +62,15 @@ impl SizeOptions {
             ("--height-mm", self.height_mm),
             ("--dpi", self.dpi),
             ("--mm-per-px", self.mm_per_px),
+            ("--paper", self.paper_mm_per_px),
         ];
         options.into_iter().find_map(|(option, value)| Some((option, value?)))
+    }
+
+    /// The option that was given.
+    #[must_use]
+    pub fn option_given(&self) -> Option<&'static str> {
+        self.given().map(|(option, _)| option)
     }
 
     /// Whether what is asked for is a size.

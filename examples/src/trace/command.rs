@@ -6,12 +6,12 @@ use super::files::{check_size, prints_file, write_files};
 use super::settings::settings;
 use super::traced::{Input, by_rows, in_colour};
 use crate::shared::{
-    ExitStatus, SizeOptions, Telling, UsualSize, doubted, is_standard, lost_ink, no_pen_got, run,
-    write_output,
+    ExitStatus, PaperError, PaperOption, SizeOptions, Telling, UsualSize, doubted, is_standard, lost_ink,
+    no_pen_got, run, write_output,
 };
 use crate::trace::{Interrupt, Overlay, overlay_png};
 use clap::{Parser, ValueEnum};
-use plotter_vector::trace::Doubt;
+use plotter_vector::trace::{Doubt, Prefer};
 use std::fs::File;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -100,6 +100,8 @@ pub struct TraceCommand {
     pub(super) max_line_px: Option<i64>,
     #[command(flatten)]
     pub(super) size: SizeOptions,
+    #[command(flatten)]
+    pub(super) paper: PaperOption,
     /// Of a TIFF with several pictures, which; 1 is the first
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) page: u32,
@@ -228,8 +230,29 @@ pub(super) fn trace(arguments: &TraceCommand, stopped: &mut bool) -> Result<(), 
         given => given.unwrap_or(Path::new("flag.png")).display().to_string(),
     };
     let here = |error: &dyn std::fmt::Display| format!("{name}: {error}");
-    let notes = input.notes(arguments.page).map_err(|error| here(&error))?;
-    let settings = settings.in_size(arguments.size.of(&notes, UsualSize::MmPerPx(MM_PER_PX))?)?;
+    let mut notes = input.notes(arguments.page).map_err(|error| here(&error))?;
+    let (mut input, mut page, mut asked) = (input, arguments.page, arguments.size);
+    let (mut paper, mut no_sheet) = (None, None);
+    if arguments.paper.is_asked() {
+        let bytes = input.bytes().map_err(|error| here(&error))?;
+        match arguments.paper.straightened(&bytes, page, settings.pens.is_some(), &asked) {
+            Ok(Some(found)) => {
+                (page, asked) = (1, found.paper.sized(&asked));
+                input = Input::Bytes(found.file.into());
+                notes = found.notes;
+                paper = Some((found.paper, found.photograph));
+            }
+            Ok(None) => {}
+            // The picture may be of use as it is; that it was not straightened is told at the end, too.
+            Err(error @ PaperError::NoSheet(_)) => no_sheet = Some(error.told()),
+            Err(error) => return Err(here(&error.told())),
+        }
+    }
+    let mut settings = settings.in_size(asked.of(&notes, UsualSize::MmPerPx(MM_PER_PX))?, page)?;
+    // A photograph's rims are ragged, in even light, too: ink that is bare there is worth no stroke.
+    if paper.is_some() && arguments.prefer.is_none() {
+        settings.vectorizer.prefer = Prefer::Strokes;
+    }
     let work = || {
         let traced = match (&settings.pens, &input) {
             (Some(pens), _) => in_colour(&settings, pens, &input, arguments, interrupt),
@@ -249,12 +272,19 @@ pub(super) fn trace(arguments: &TraceCommand, stopped: &mut bool) -> Result<(), 
         *stopped = true;
         return Err(format!("{name}: stopped; nothing is written"));
     }
-    let traced = traced?;
+    let mut traced = traced?;
+    if let Some((paper, _)) = &paper {
+        traced.straightened(paper, notes);
+    } else if let Some(why) = &no_sheet {
+        traced.ink.insert(0, ("paper", format!("as it is: {}", why.trim_start_matches("--paper: "))));
+    }
+    let traced = traced;
     let drawing = &traced.drawing;
     let report = Report::new(&settings, &traced);
     check_size(arguments, &settings.size, drawing)?;
     write_files(arguments, &settings.size, &traced, &report, &name)?;
-    explain(arguments, &settings.vectorizer, &input).map_err(|error| here(&error))?;
+    let photograph = paper.as_ref().map(|(paper, photograph)| (&paper.quad, photograph));
+    explain(arguments, &settings, &input, photograph).map_err(|error| here(&error))?;
     let mut worst = None;
     if let (Some(path), Some(picture)) = (&settings.overlay, &traced.picture) {
         worst = traced.errors.as_ref().and_then(|errors| errors.worst);
@@ -280,14 +310,19 @@ pub(super) fn trace(arguments: &TraceCommand, stopped: &mut bool) -> Result<(), 
         arguments.telling.tell(&table, json)?;
     }
     // Everything is written: what was traced may still be of use.
+    if let Some(why) = no_sheet {
+        return Err(here(&why));
+    }
     if let Some(left) = traced.unassigned {
         return Err(here(&no_pen_got(left)));
     }
     let is_meant = arguments.min_stroke.is_some() && !matches!(traced.doubt, Some(Doubt::Rough { .. }));
     doubted(traced.doubt.filter(|_| !is_meant), REMEDY).map_err(|error| here(&error))?;
     match &traced.errors {
-        Some(errors) => lost_ink(&settings.vectorizer, errors, traced.widest_px, traced.is_uneven)
-            .map_err(|error| here(&error)),
+        Some(errors) => {
+            lost_ink(&settings.vectorizer, errors, traced.widest_px, traced.is_uneven || paper.is_some())
+                .map_err(|error| here(&error))
+        }
         None => Ok(()),
     }
 }

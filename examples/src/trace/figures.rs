@@ -2,7 +2,7 @@
 
 use super::settings::Settings;
 use super::traced::Traced;
-use crate::shared::{PictureSize, assumed, told_notes};
+use crate::shared::{Paper, PaperReport, PictureSize, assumed, told_notes};
 use plotter_vector::{
     Algorithm, Drawing, ErrorReport,
     picture::{FileNotes, Ground},
@@ -20,6 +20,9 @@ const RASTER_PX: f64 = 0.5;
 #[derive(Debug, Serialize)]
 pub(super) struct Report<'a> {
     picture: PictureReport,
+    /// The sheet that was straightened; of it are all of the figures.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    paper: Option<PaperReport>,
     /// What was taken from the file or assumed, a line each.
     assumed: Vec<String>,
     /// The same as rows of the table.
@@ -60,6 +63,7 @@ impl<'a> Report<'a> {
         told.extend(traced.ink.iter().cloned());
         Self {
             picture: PictureReport::new(&traced.notes, &settings.size),
+            paper: traced.paper.as_ref().map(Paper::report),
             assumed: assumed(&told),
             told,
             mode: ours.then_some(settings.vectorizer.mode),

@@ -97,6 +97,9 @@ pub(super) fn write_files(
     if let Some(path) = &arguments.svg {
         let mut out = String::new();
         svg_in_colour(drawing, &traced.palette, Some(size.mm_per_px), 1.0, &mut out).map_err(text)?;
+        if let Some(paper) = &traced.paper {
+            out = out.replacen("<svg ", &format!("<svg {} ", paper.svg_attributes()), 1);
+        }
         write_output(path, out)?;
     }
     if let Some(path) = &arguments.hpgl {

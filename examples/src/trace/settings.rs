@@ -31,6 +31,8 @@ pub(super) struct Settings {
     pub(super) threads: Option<rayon::ThreadPool>,
     pub(super) overlay: Option<PathBuf>,
     pub(super) size: PictureSize,
+    /// Of the file that is traced.
+    pub(super) page: u32,
 }
 
 /// The same before anything is known of the picture: what is in mm waits.
@@ -38,7 +40,7 @@ pub(super) struct Settings {
 pub(super) struct Unscaled {
     vectorizer: Vectorizer,
     config: VectorizeConfig,
-    pens: Option<Pens>,
+    pub(super) pens: Option<Pens>,
     threads: Option<rayon::ThreadPool>,
     pub(super) overlay: Option<PathBuf>,
     gap_mm: Option<f64>,
@@ -47,8 +49,8 @@ pub(super) struct Unscaled {
 }
 
 impl Unscaled {
-    /// For a picture of that size.
-    pub(super) fn in_size(self, size: PictureSize) -> Result<Settings, String> {
+    /// For a picture of that size, on that page of its file.
+    pub(super) fn in_size(self, size: PictureSize, page: u32) -> Result<Settings, String> {
         let Self { mut vectorizer, config, pens, threads, overlay, gap_mm, min_stroke_mm, keep_pale } = self;
         vectorizer.threshold.keep_pale = keep_pale;
         vectorizer.gap_px = gap_mm.map(|gap_mm| gap_mm / size.mm_per_px);
@@ -56,7 +58,7 @@ impl Unscaled {
         if vectorizer.algorithm == Algorithm::Ours {
             vectorizer.areas = self::vectorizer(&config, size.mm_per_px)?.areas;
         }
-        Ok(Settings { vectorizer, pens, threads, overlay, size })
+        Ok(Settings { vectorizer, pens, threads, overlay, size, page })
     }
 }
 

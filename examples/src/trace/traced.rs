@@ -2,7 +2,7 @@
 
 use super::command::{FLAG, TraceCommand};
 use super::settings::Settings;
-use crate::shared::{WorkShown, is_standard, read_file, read_input, told_ink};
+use crate::shared::{Paper, WorkShown, is_standard, read_file, read_input, told_ink};
 use crate::trace::{Interrupt, overlay_step};
 use plotter_vector::{
     Colour, DecodeError, Drawing, FileRows, Gray, Palette, Pixel, Progress, Rgb,
@@ -73,6 +73,18 @@ pub(super) struct Traced {
     pub(super) ink: Vec<(&'static str, String)>,
     /// Ink that none of several pens got.
     pub(super) unassigned: Option<Unassigned>,
+    /// The sheet that was straightened, of which all of this is.
+    pub(super) paper: Option<Paper>,
+}
+
+impl Traced {
+    /// Says which sheet it was that was traced, and of which file.
+    pub(super) fn straightened(&mut self, paper: &Paper, notes: FileNotes) {
+        let mut told = paper.told();
+        told.extend(paper.told_ends(&self.drawing, self.widest_px));
+        told.append(&mut self.ink);
+        (self.ink, self.notes, self.paper) = (told, notes, Some(paper.clone()));
+    }
 }
 
 /// The picture's file: one that can be read as often as it takes, or the bytes of what cannot, as a pipe.
@@ -114,7 +126,8 @@ impl Input {
         scan.and_then(FileRows::into_gray).map_err(|error| error.to_string())
     }
 
-    fn bytes(&self) -> Result<Cow<'_, [u8]>, String> {
+    /// The whole file.
+    pub(super) fn bytes(&self) -> Result<Cow<'_, [u8]>, String> {
         match self {
             Self::File(path) => read_file(path).map(Cow::Owned),
             Self::Bytes(bytes) => Ok(Cow::Borrowed(bytes)),
@@ -130,7 +143,7 @@ pub(super) fn by_rows<R: Read + Seek>(
     interrupt: Interrupt,
 ) -> Result<Traced, String> {
     let start = Instant::now();
-    let mut scan = FileRows::of_page(file, arguments.page).map_err(|error| error.to_string())?;
+    let mut scan = FileRows::of_page(file, settings.page).map_err(|error| error.to_string())?;
     let bar = progress(arguments);
     let mut report = |done: f64| {
         bar.set(steps(done));
@@ -160,6 +173,7 @@ pub(super) fn by_rows<R: Read + Seek>(
         time,
         notes: scan.notes().clone(),
         unassigned: None,
+        paper: None,
     })
 }
 
@@ -215,7 +229,7 @@ pub(super) fn in_colour(
     interrupt: Interrupt,
 ) -> Result<Traced, String> {
     let read = input.bytes()?;
-    let (colour, notes) = decode_page_in_colour(&read, arguments.page).map_err(|error| match error {
+    let (colour, notes) = decode_page_in_colour(&read, settings.page).map_err(|error| match error {
         DecodeError::TooLarge(_) | DecodeError::TooMuchMemory { .. } => format!(
             "--pens: colours are told apart on the whole picture, but {error}; or take --pens 1, which is traced by \
              rows at any size"
@@ -253,6 +267,7 @@ pub(super) fn in_colour(
         is_uneven: false,
         ink: told_ruling(found.ruling),
         unassigned: found.unassigned,
+        paper: None,
         drawing,
     })
 }

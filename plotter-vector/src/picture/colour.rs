@@ -71,6 +71,12 @@ impl Colour {
         Ok(Self { width, height, channels })
     }
 
+    /// A picture of a size that another picture could have, from three channels a pixel.
+    pub(crate) fn of_checked_size(width: u32, height: u32, channels: Vec<u8>) -> Self {
+        debug_assert_eq!(channels.len(), 3 * width as usize * height as usize, "three channels a pixel");
+        Self { width, height, channels }
+    }
+
     /// Number of columns.
     #[must_use]
     pub const fn width(&self) -> u32 {

@@ -20,6 +20,7 @@ pub(crate) mod histogram;
 pub(crate) mod oklab;
 #[cfg(feature = "image")]
 mod orientation;
+mod paper;
 mod px_point;
 #[cfg(feature = "image")]
 mod resolution;
@@ -43,6 +44,7 @@ pub use histogram::Histogram;
 pub use oklab::{Oklab, Rgb, RgbError};
 #[cfg(feature = "image")]
 pub use orientation::Orientation;
+pub use paper::{Homography, NoSheetQuad, SheetQuad, StraightSheet};
 pub use px_point::{PxPoint, PxVec};
 #[cfg(feature = "image")]
 pub use resolution::{Resolution, ResolutionDoubt, ResolutionSource};

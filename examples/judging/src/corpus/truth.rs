@@ -2,8 +2,10 @@
 
 use super::junctions;
 use super::strokes::{Picture, Stroke};
-use crate::Homography;
-use plotter_vector::{Rgb, picture::RgbError};
+use plotter_vector::{
+    Rgb,
+    picture::{Homography, RgbError},
+};
 use serde::{Deserialize, Serialize};
 
 /// How places are counted in these files.

@@ -5,10 +5,10 @@ use super::parameters as p;
 use super::plane::Plane;
 use super::sheet::Sheet;
 use super::texture::{grain, step, streaks};
-use crate::Homography;
 use crate::corpus::random::Random;
 use crate::corpus::strokes::turned;
 use core::f64::consts::TAU;
+use plotter_vector::{PxPoint, picture::Homography};
 
 /// Paper under a lamp and the pen on it, levels in red, green and blue.
 const PAPER: [f64; 3] = [238.0, 232.0, 220.0];
@@ -151,11 +151,13 @@ pub(crate) fn perspective(
         corner(wide, high, 0.3 * far),
         corner(0.0, high, -0.3 * far),
     ];
+    let corners = corners.map(|(x, y)| PxPoint::new(x, y));
     let there = Homography::of_quadrilateral((wide, high), corners)?;
     let back = there.inverse()?;
     let (width, height) = (wider(cover.width), cover.height + wider(cover.width) - cover.width);
     let on_sheet = |x: f64, y: f64| {
-        back.apply((x, y)).filter(|(x, y)| (0.0..wide).contains(x) && (0.0..high).contains(y))
+        let on = back.apply(PxPoint::new(x, y))?;
+        ((0.0..wide).contains(&on.x) && (0.0..high).contains(&on.y)).then_some((on.x, on.y))
     };
     // Four rays a pixel, so that edges are as smooth as through a lens: how many meet the sheet, how many its
     // ink.

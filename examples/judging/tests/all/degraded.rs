@@ -6,6 +6,7 @@ use built_example::{Folder, complaint, run_example};
 use image::GrayImage;
 use plotter_judging::corpus::{Truth, all};
 use plotter_judging::degraded::{Degraded, Drawn, Kind, Strength, parameter_table};
+use plotter_vector::PxPoint;
 
 /// Farthest that the ink of a stroke may lie from its place in the truth, median, px: a pixel that is counted
 /// from its corner in place of its centre would be half a pixel off.
@@ -96,7 +97,10 @@ fn median_off_px(degraded: &Degraded) -> (f64, f64) {
 fn off_px(picture: &GrayImage, truth: &Truth, at: (f64, f64), across: (f64, f64)) -> Option<f64> {
     let level = |away: f64| {
         let place = (at.0 + away * across.0, at.1 + away * across.1);
-        let (x, y) = truth.view.map_or(Some(place), |view| view.homography.apply(place))?;
+        let (x, y) = truth.view.map_or(Some(place), |view| {
+            let seen = view.homography.apply(PxPoint::new(place.0, place.1))?;
+            Some((seen.x, seen.y))
+        })?;
         #[expect(clippy::cast_possible_truncation, reason = "places on a picture of a few hundred pixels")]
         let (x, y) = (x as f32, y as f32);
         image::imageops::interpolate_bilinear(picture, x, y).map(|pixel| f64::from(pixel.0[0]))

@@ -16,4 +16,5 @@ mod degraded;
 mod judge_command;
 mod judged_corpus;
 mod lost_ink;
+mod paper;
 mod pens;
