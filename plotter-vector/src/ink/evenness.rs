@@ -1,8 +1,8 @@
 //! [`Evenness`]: whether one level tells ink from paper all over a picture.
 
 use crate::ink::grain::Grain;
-use crate::picture::Histogram;
 use crate::picture::histogram::otsu;
+use crate::picture::{Gray, Histogram};
 
 /// Pixels that are looked at, about: rows of a larger picture are left out, evenly.
 const LOOKED_AT: u64 = 1 << 21;
@@ -79,6 +79,13 @@ impl Evenness {
         }
     }
 
+    /// Of all of a picture.
+    pub(crate) fn of(gray: &Gray) -> Self {
+        let mut evenness = Self::new(gray.width(), gray.height());
+        (0..).zip(gray.rows()).for_each(|(y, row)| evenness.push(y, row));
+        evenness
+    }
+
     /// Row `y` of the picture.
     pub(crate) fn push(&mut self, y: u32, levels: &[u8]) {
         self.grain.push(levels, y.wrapping_sub(Grain::BEHIND).is_multiple_of(self.every));
@@ -122,7 +129,7 @@ impl Evenness {
 
     /// Whether the picture was enlarged, each of its own pixels to a block.
     #[expect(clippy::cast_precision_loss, reason = "a picture's pixels")]
-    fn is_enlarged(&self, contrast: f64) -> bool {
+    pub(crate) fn is_enlarged(&self, contrast: f64) -> bool {
         let lonely: u64 = self.lonely.iter().sum();
         let partial: u64 = (0_u16..)
             .zip(self.lonely)
@@ -130,6 +137,14 @@ impl Evenness {
             .map(|(_, n)| n)
             .sum();
         lonely as f64 > LONELY * self.jumps as f64 && partial as f64 > PARTIAL * lonely as f64
+    }
+
+    /// Whether the strokes have pits half as deep as the contrast, given how much of the picture is ink.
+    #[expect(clippy::cast_precision_loss, reason = "a picture's pixels")]
+    pub(crate) fn is_grainy(&self, ink_is_dark: bool, contrast: f64, ink_pixels: u64) -> bool {
+        let part = self.looked_at as f64 / self.pixels.max(1) as f64;
+        let paper_pixels = self.pixels.saturating_sub(ink_pixels);
+        self.grain.is_grainy(ink_is_dark, contrast, ink_pixels as f64 * part, paper_pixels as f64 * part)
     }
 
     /// Whether one level serves, for a picture with these levels.
@@ -151,9 +166,8 @@ impl Evenness {
         let rims_at = |level: u8| self.more.iter().take(usize::from(level) + 1).sum::<i64>() as f64;
         let rims = rims_at(level);
         let light_paper = light_pixels >= dark_pixels;
-        let of_looked_at = self.looked_at as f64 / self.pixels as f64;
-        let ink_pixels = dark_pixels.min(light_pixels) as f64 * of_looked_at;
-        let paper_pixels = dark_pixels.max(light_pixels) as f64 * of_looked_at;
+        let ink_of_all = dark_pixels.min(light_pixels);
+        let ink_pixels = ink_of_all as f64 * self.looked_at as f64 / self.pixels as f64;
         let is_thin = ink_pixels < THIN_PX * rims / 2.0;
         let are_same = BETWEEN.iter().all(|(part, differ)| {
             if is_thin && *part < PALE_SIDE {
@@ -182,7 +196,7 @@ impl Evenness {
         let quarter = from.map_or(paper, |(at, _)| f64::from(at));
         are_same
             && !self.is_enlarged(contrast)
-            && !self.grain.is_grainy(light_paper, contrast, ink_pixels, paper_pixels)
+            && !self.is_grainy(light_paper, contrast, ink_of_all)
             && (quarter - paper).abs() <= PAPER_SPREADS * contrast
     }
 }

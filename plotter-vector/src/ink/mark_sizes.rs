@@ -161,7 +161,8 @@ mod tests {
             thrown.set(Pixel::new(x, y), random.unit() < 0.1);
         }
         let found = MarkSizes::of(&dots).finish(5, 0);
-        assert_eq!((found.marks, found.spread, found.as_thrown), (900, 0.0, false));
+        assert_eq!((found.marks, found.as_thrown), (900, false));
+        assert!(found.spread < 1e-6, "{found:?}");
         let found = MarkSizes::of(&thrown).finish(5, 0);
         assert!(found.as_thrown && found.spread > 0.3, "{found:?}");
     }

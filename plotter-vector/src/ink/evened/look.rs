@@ -27,6 +27,8 @@ pub struct Look {
     pub line_px: f32,
     /// Whether strokes have grain and gaps, as those of pencil and chalk.
     pub broken: bool,
+    /// Whether the picture was enlarged, each of its own pixels to a block, whose steps were smoothed.
+    pub enlarged: bool,
     /// How far from the paper marks lie that were left out because they are much paler than the ink, levels.
     pub pale_levels: Option<f32>,
     /// Specks that were left out: too small, too pale or too short for strokes.
@@ -56,6 +58,9 @@ impl Look {
             ));
             let strokes = if self.broken { "with grain and gaps" } else { "whole" };
             told.push(("lines", format!("{line_px:.0} px wide, {strokes}")));
+        }
+        if self.enlarged {
+            told.push(("enlarged", "its own pixels are seen as blocks, whose steps are smoothed".into()));
         }
         if let Some(levels) = self.pale_levels {
             let like = "much paler than the ink, as ruling and what shines through are";

@@ -30,8 +30,9 @@ mod ridges;
 mod sheet_edge;
 mod side;
 
-use crate::ink::grain::Grain;
+use crate::ink::evenness::Evenness;
 use crate::ink::{Polarity, pen_width_px};
+use crate::picture::runs::ink_runs;
 use crate::picture::{Bitmap, Gray, Pixel};
 pub use look::Look;
 use paper::Paper;
@@ -48,8 +49,14 @@ const FIRST_SIGMA_PX: f32 = 1.0;
 const SIGMA_OF_WIDTH: f32 = 0.18;
 const SIGMA_PX: core::ops::RangeInclusive<f32> = 0.8..=4.0;
 
-/// What was smoothed is sharpened by taking away what is smoothed so many times more.
+/// What was smoothed is sharpened by taking away what is smoothed so many times more; not what is enlarged,
+/// for the steps of its pixels would come out again.
 const SHARPENED_BY: f32 = 1.5;
+
+/// And the noise's standard deviation becomes so many times what it is. Of white noise that was smoothed by σ,
+/// with the power exp(−σ²ω²), the gain 2 − exp(−(1.5 σ)² ω² / 2) leaves, over the plane, a variance of
+/// 4 − 4 / (1 + 1.5² / 2) + 1 / (1 + 1.5²) = 2.43 times.
+const SHARPENED_NOISE: f32 = 1.56;
 
 /// Rough strokes are looked at as sharply as this, px, for windows along them smooth enough.
 const ROUGH_SIGMA_PX: f32 = 0.6;
@@ -89,6 +96,9 @@ const DARK_IF_LONG: f32 = 0.3;
 /// How far the rims of what is left out reach, px.
 const RIM_PX: u32 = 2;
 
+/// And those of ink, px: blurred by a camera, too.
+const NEAR_PX: u32 = 4;
+
 /// A picture whose ink is black and whose paper is white.
 #[derive(Clone, Debug)]
 pub(crate) struct Evened {
@@ -124,6 +134,9 @@ impl Evened {
         look.sheet = sheet.map(|sheet| sheet.corners);
         let Some(ridges) = Ridges::of(&first, &paper, keeps_pale) else { return Self::empty(gray, look) };
         look.ink_levels = ridges.ink / LEVEL;
+        let evenness = Evenness::of(gray);
+        let contrast = f64::from(look.ink_levels) * mean_light(gray, light_ink);
+        look.enlarged = evenness.is_enlarged(contrast);
         look.pale_levels = ridges.pale.map(|pale| pale / LEVEL);
 
         let sure = Sure { noise: OUT_OF_NOISE, darkness: HALF * ridges.ink };
@@ -141,7 +154,7 @@ impl Evened {
         };
         let blurred = dark.blurred(BLURRED_WIDTHS * width_px);
         look.broken = count(pieces(&dark, &paper)) > BROKEN * count(pieces(&blurred, &paper)) + FEW_PARTS
-            || is_grainy(gray, light_ink, ridges.ink / LEVEL, ink_pixels);
+            || evenness.is_grainy(!light_ink, contrast, ink_pixels);
         drop(blurred);
         if look.broken {
             let (rough, rough_paper) = darkness(Plane::smoothed(gray, ROUGH_SIGMA_PX, light_ink), reach);
@@ -158,8 +171,9 @@ impl Evened {
                     _ => break,
                 }
             }
-        } else {
+        } else if !look.enlarged {
             dark.sharpen(SHARPENED_BY * sigma_px);
+            paper.make_rougher(SHARPENED_NOISE);
         }
         look.line_px = width_px;
         let radius_px = width_px / 2.0 + sigma_px;
@@ -171,6 +185,7 @@ impl Evened {
         if ink.count() == 0 {
             return Self::empty(gray, look);
         }
+        whiten_far_from(&ink, &mut levels);
         Self { gray: Gray::of_checked_size(gray.width(), gray.height(), levels), look }
     }
 
@@ -212,17 +227,12 @@ fn darkness(smooth: Plane, reach_px: usize) -> (Plane, Paper) {
     (darkness, paper)
 }
 
-/// Whether the strokes have pits, as deep as half of the ink is dark where the light is the picture's mean.
-fn is_grainy(gray: &Gray, ink_is_light: bool, ink_levels: f32, ink_pixels: u64) -> bool {
-    let pixels = gray.pixels().len() as u64;
+/// The mean level, as a part of white, of a picture that is mostly paper: how light that is in the mean.
+fn mean_light(gray: &Gray, ink_is_light: bool) -> f64 {
     let all: u64 = gray.pixels().iter().map(|level| u64::from(*level)).sum();
     #[expect(clippy::cast_precision_loss, reason = "a picture's pixels")]
-    let (mean, ink, paper) =
-        (all as f64 / pixels.max(1) as f64, ink_pixels as f64, pixels.saturating_sub(ink_pixels) as f64);
-    let light = if ink_is_light { 255.0 - mean } else { mean } / 255.0;
-    let mut grain = Grain::new();
-    gray.rows().for_each(|row| grain.push(row, true));
-    grain.is_grainy(!ink_is_light, f64::from(ink_levels) * light, ink, paper)
+    let mean = all as f64 / gray.pixels().len().max(1) as f64 / 255.0;
+    if ink_is_light { 1.0 - mean } else { mean }
 }
 
 /// What is ink for sure.
@@ -335,6 +345,26 @@ fn leave_out(found: &Parts, kept: &[bool], ink: &mut Bitmap, levels: &mut [u8]) 
                     *level = u8::MAX;
                 }
             }
+        }
+    }
+}
+
+/// Makes paper white where no ink is near: whoever looks at a part of it alone sees no noise.
+fn whiten_far_from(ink: &Bitmap, levels: &mut [u8]) {
+    let width = ink.width() as usize;
+    let mut is_near = vec![false; width];
+    for (y, levels) in (0..ink.height()).zip(levels.chunks_mut(width.max(1))) {
+        is_near.fill(false);
+        for row in y.saturating_sub(NEAR_PX)..(y + NEAR_PX + 1).min(ink.height()) {
+            for run in ink_runs(ink.row(row)) {
+                let near = run.start.saturating_sub(NEAR_PX) as usize..(run.end + NEAR_PX) as usize;
+                if let Some(near) = is_near.get_mut(near.start..near.end.min(width)) {
+                    near.fill(true);
+                }
+            }
+        }
+        for (level, _) in levels.iter_mut().zip(&is_near).filter(|(_, is_near)| !**is_near) {
+            *level = u8::MAX;
         }
     }
 }

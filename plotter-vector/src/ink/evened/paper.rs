@@ -89,6 +89,11 @@ impl Paper {
         }
     }
 
+    /// The same paper with noise so many times as strong.
+    pub(super) fn make_rougher(&mut self, times: f32) {
+        self.noise.iter_mut().for_each(|noise| *noise *= times);
+    }
+
     /// The medians alone of a plane of levels, as offsets.
     pub(super) fn medians(levels: &Plane) -> Self {
         Self::measured(levels, |found| found.to_vec())
