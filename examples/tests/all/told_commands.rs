@@ -16,7 +16,7 @@ fn picture(folder: &Folder, name: &str, mut level: impl FnMut(u32, u32) -> u8) -
 fn is_line(x: u32, y: u32) -> bool {
     let inside = (30..210).contains(&x) && (30..170).contains(&y);
     let frame = inside && !((34..206).contains(&x) && (34..166).contains(&y));
-    frame || (inside && (x as i32 - 40 - y as i32).unsigned_abs() < 3)
+    frame || (inside && x.abs_diff(y + 40) < 3)
 }
 
 fn assumed(report: &str) -> Vec<String> {
