@@ -157,6 +157,7 @@ impl Evened {
             || evenness.is_grainy(!light_ink, contrast, ink_pixels);
         drop(blurred);
         if look.broken {
+            drop(dark); // its memory is needed
             let (rough, rough_paper) = darkness(Plane::smoothed(gray, ROUGH_SIGMA_PX, light_ink), reach);
             loop {
                 dark = oriented::along_lines(&rough, width_px, OUT_OF_NOISE * rough_paper.usual_noise);

@@ -32,14 +32,16 @@ const LEAST_SEEN_PX: f32 = 0.8;
 /// unbiased detector of curvilinear structures" (1998), section 3.
 pub(super) fn along_lines(darkness: &Plane, width_px: f32, least: f32) -> Plane {
     let windows = windows(width_px);
-    let near = darkness.clone().extreme(whole(libm::ceilf(REACH * ALONG * width_px).max(1.0)), false);
+    // In half the size: it only says where to ask.
+    let reach = whole(libm::ceilf(REACH * ALONG * width_px).max(1.0));
+    let near = darkness.halved(u16::max).extreme(reach.div_ceil(2), false);
     let seen_px = (SEEN * width_px).max(LEAST_SEEN_PX);
     let soft = darkness.blurred(seen_px);
     let step = isize::try_from(whole(seen_px).max(1)).unwrap_or(1);
     let mut out = Plane::new(darkness.width, darkness.height);
     out.in_rows(|y, row| {
-        for (x, (out, near)) in row.iter_mut().zip(near.row(y)).enumerate() {
-            *out = if f32::from(*near) < least {
+        for (x, out) in row.iter_mut().enumerate() {
+            *out = if f32::from(near.near(x / 2, y / 2, 0, 0)) < least {
                 darkness.row(y).get(x).copied().unwrap_or(0)
             } else {
                 let window = windows.get(direction(&soft, x, y, step)).map_or(&[][..], Vec::as_slice);

@@ -67,39 +67,49 @@ impl Plane {
     /// The plane through a Gaussian of `sigma_px`.
     pub(super) fn blurred(&self, sigma_px: f32) -> Self {
         let kernel = kernel(sigma_px);
-        let mut across = Self::new(self.width, self.height);
-        across.in_rows(|y, out| {
-            smooth_row(&self.row(y).iter().map(|v| f32::from(*v)).collect::<Vec<_>>(), &kernel, out);
-        });
-        across.smoothed_down(&kernel)
+        self.smoothed_across(&kernel).smoothed_down(&kernel)
     }
 
     /// Each value and, once more, what it has more than a Gaussian of `sigma_px` around it: what smoothing has
     /// widened is narrow again.
     pub(super) fn sharpen(&mut self, sigma_px: f32) {
-        let soft = self.blurred(sigma_px);
+        let kernel = kernel(sigma_px);
+        let across = self.smoothed_across(&kernel);
         self.in_rows(|y, row| {
-            for (value, soft) in row.iter_mut().zip(soft.row(y)) {
-                *value = rounded(2.0 * f32::from(*value) - f32::from(*soft));
+            for (value, soft) in row.iter_mut().zip(across.down(y, &kernel)) {
+                *value = rounded(2.0 * f32::from(*value) - f32::from(rounded(soft)));
             }
         });
     }
 
+    fn smoothed_across(&self, kernel: &[f32]) -> Self {
+        let mut across = Self::new(self.width, self.height);
+        across.in_rows(|y, out| {
+            smooth_row(&self.row(y).iter().map(|v| f32::from(*v)).collect::<Vec<_>>(), kernel, out);
+        });
+        across
+    }
+
     fn smoothed_down(&self, kernel: &[f32]) -> Self {
         let mut out = Self::new(self.width, self.height);
-        let reach = kernel.len() / 2;
-        let last = self.height.saturating_sub(1);
         out.in_rows(|y, out| {
-            let mut sums = vec![0.0_f32; out.len()];
-            for (tap, weight) in kernel.iter().enumerate() {
-                let from = (y + tap).saturating_sub(reach).min(last);
-                for (sum, value) in sums.iter_mut().zip(self.row(from)) {
-                    *sum += weight * f32::from(*value);
-                }
-            }
-            out.iter_mut().zip(sums).for_each(|(out, sum)| *out = rounded(sum));
+            out.iter_mut().zip(self.down(y, kernel)).for_each(|(out, sum)| *out = rounded(sum));
         });
         out
+    }
+
+    /// Row `y` through a kernel that stands upright.
+    fn down(&self, y: usize, kernel: &[f32]) -> Vec<f32> {
+        let reach = kernel.len() / 2;
+        let last = self.height.saturating_sub(1);
+        let mut sums = vec![0.0_f32; self.width];
+        for (tap, weight) in kernel.iter().enumerate() {
+            let from = (y + tap).saturating_sub(reach).min(last);
+            for (sum, value) in sums.iter_mut().zip(self.row(from)) {
+                *sum += weight * f32::from(*value);
+            }
+        }
+        sums
     }
 
     /// Half as wide and high: of each two by two values what `of` makes of them, two and two.
