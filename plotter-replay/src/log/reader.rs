@@ -91,6 +91,14 @@ impl<R: BufRead> Reader<R> {
         let (refused, message) = match Header::from_line(self.source.line()) {
             Ok((header, None)) => {
                 self.header = header;
+                let place = self.source.place();
+                // A carriage return alone in the place of the line end: cut off there, there would be none.
+                if !place.ended && place.bytes > self.source.line().len() as u64 {
+                    let byte_offset = place.byte_offset.saturating_add(place.bytes.saturating_sub(1));
+                    let damage = Damage { byte_offset, bytes: 1, ..self.damage(DamageKind::LineEnd) };
+                    self.summary.damaged_bytes = 1;
+                    self.waiting.push_back(Err(damage));
+                }
                 return Ok(());
             }
             Ok((header, Some(message))) => {

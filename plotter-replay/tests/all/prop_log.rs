@@ -130,3 +130,17 @@ proptest! {
         prop_assert_eq!(good(&log).len(), 1);
     }
 }
+
+#[test]
+fn a_carriage_return_in_the_place_of_the_first_line_end_is_told() {
+    let log = write(&Header::new(), &[]);
+    let mut hit = log.clone();
+    *hit.last_mut().unwrap() = b'\r';
+    let mut reader = Reader::new(&hit[..]).unwrap();
+    let damage = reader.next().unwrap().unwrap_err();
+    assert_eq!((damage.kind, damage.byte_offset), (DamageKind::LineEnd, log.len() as u64 - 1));
+    assert_eq!(reader.next(), None);
+    assert_eq!(reader.summary().damaged_bytes, 1);
+    // Cut in front of it nothing is lost.
+    assert!(Reader::new(&log[..log.len() - 1]).unwrap().summary().is_clean());
+}
