@@ -131,6 +131,12 @@ impl Dashes {
         self.phase
     }
 
+    /// What is left of the piece, whole.
+    pub(super) fn rest(&mut self) -> Option<Piece> {
+        let from = if self.length > 0.0 { self.along / self.length } else { 0.0 };
+        (!core::mem::replace(&mut self.done, true)).then(|| self.piece.part(from, 1.0))
+    }
+
     /// The next dash or dot.
     pub(super) fn next(&mut self) -> Option<Piece> {
         if self.done {

@@ -5,8 +5,9 @@ use super::piece::Piece;
 use super::window::{Visible, Window};
 use crate::Vec2;
 
-/// Dashes and dots that one event may give: where there would be more, lines are drawn whole.
-const MOST_PARTS: u32 = 1 << 20;
+/// Dashes and dots that one event may give: where there would be more, lines are drawn whole. With a travel to
+/// each they are about as many operations as the lines of the densest filling.
+const MOST_PARTS: u32 = 30_000;
 
 /// Takes pieces one at a time, divides them by the line type, cuts them at the window, and adds the travels
 /// that this makes necessary.
@@ -103,7 +104,7 @@ impl PenPath {
                 return Some(self.give(Piece::Travel { to: piece.from() }));
             }
             let dashes = self.dashes.as_mut()?;
-            match dashes.next() {
+            match if self.parts_left > 0 { dashes.next() } else { dashes.rest() } {
                 Some(piece) => {
                     self.parts_left = self.parts_left.saturating_sub(1);
                     self.visible = Some(Visible::new(piece, self.window));

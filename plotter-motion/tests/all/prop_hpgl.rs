@@ -516,3 +516,11 @@ fn from_line(at: Point, from: Point, to: Point) -> f64 {
     let part = if way.length() > 0.0 { ((at - from).dot(way) / way.dot(way)).clamp(0.0, 1.0) } else { 0.0 };
     at.distance(from + way * part)
 }
+
+#[test]
+fn a_circle_of_many_fine_dashes_ends_whole() {
+    let text = "PD;LT4,0.0001,1;CI11,-6;";
+    let ops = PlotOps::with_interpreter(text.bytes(), Interpreter::<64>::with_options(Default::default()));
+    let ops = ops.count();
+    assert!((50_000..=MOST_OF_A_COMMAND).contains(&ops), "{ops}");
+}
