@@ -6,7 +6,7 @@
 //! how many strokes were drawn, and how many are found.
 //!
 //! ```text
-//! cargo run --release -p plotter-judging --example draw_photograph           # rewrites docs/pictures/photograph.png
+//! cargo run --release -p plotter-judging --example draw_photograph               # rewrites that picture
 //! cargo run --release -p plotter-judging --example draw_photograph -- FILE.png
 //! ```
 

@@ -49,8 +49,8 @@ impl Sheet {
     /// pixels of a line, and one to half a window of the way between lines and of the search for more. Eight
     /// times as many are allowed, so that a follower that goes in circles ends.
     pub(super) fn most_windows(&self, window_px: u32) -> u64 {
-        const TIMES: f64 = 8.0;
-        const BEGINS: f64 = 1000.0;
+        const TIMES: f64 = 8.0; // two whole drawings took about what is reckoned
+        const BEGINS: f64 = 1000.0; // windows that the least of drawings gets
         let length = |line: &Vec<PxPoint>| -> f64 {
             line.windows(2).filter_map(|pair| Some(pair.first()?.distance(*pair.get(1)?))).sum()
         };
@@ -92,7 +92,7 @@ pub(super) fn sheet(arguments: &FollowCommand, name: &str) -> Result<Sheet, Stri
     } else if is_light {
         told.push(("seen", "with dark and light exchanged: the camera looks for dark lines".into()));
     }
-    let picture = match vectorizer.threshold.look(&picture).filter(|_| traced.look.is_some()) {
+    let picture = match traced.look.and_then(|_| vectorizer.threshold.look(&picture)) {
         Some((evened, _)) => evened,
         None if is_light => negative(&picture).map_err(|error| format!("{name}: {error}"))?,
         None => picture,

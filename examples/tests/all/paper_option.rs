@@ -1,9 +1,9 @@
 //! `--paper`: the sheet that a photograph shows, straightened in the tools.
 
 use crate::built_example;
+use crate::picture_files::extent_mm;
 
 use built_example::{Folder, complaint, data, run_example};
-use plotter_motion::{Point, hpgl};
 use plotter_vector::{PxPoint, picture::Homography};
 use serde_json::Value;
 
@@ -49,20 +49,6 @@ fn photograph(reaches_over: bool) -> Vec<u8> {
         }
     }
     file
-}
-
-/// Width and height of what an HPGL file draws, mm.
-fn extent_mm(plt: &str) -> [f64; 2] {
-    let text = std::fs::read(plt).unwrap();
-    let places: Vec<Point> = hpgl::plot_ops(&text[..])
-        .filter_map(|op| op.ok()?.target())
-        .filter(|at| *at != Point::ORIGIN)
-        .collect();
-    let span = |of: fn(&Point) -> f64| {
-        let values = places.iter().map(of);
-        values.clone().fold(f64::MIN, f64::max) - values.fold(f64::MAX, f64::min)
-    };
-    [span(|at| at.x), span(|at| at.y)]
 }
 
 #[test]

@@ -44,8 +44,8 @@ fn frame(width: u32, height: u32, inset: u32) -> Vec<u8> {
     (0..width * height).map(at).collect()
 }
 
-/// Width and height of what an HPGL file draws, units.
-fn extent(plt: &str) -> [f64; 2] {
+/// Width and height of what an HPGL file draws, mm.
+pub(crate) fn extent_mm(plt: &str) -> [f64; 2] {
     let text = std::fs::read(plt).unwrap();
     let places: Vec<Point> = hpgl::plot_ops(&text[..])
         .filter_map(|op| op.ok()?.target())
@@ -55,7 +55,12 @@ fn extent(plt: &str) -> [f64; 2] {
         let values = places.iter().map(of);
         values.clone().fold(f64::MIN, f64::max) - values.fold(f64::MAX, f64::min)
     };
-    [span(|at| at.x), span(|at| at.y)].map(|mm| (mm * 40.0).round())
+    [span(|at| at.x), span(|at| at.y)]
+}
+
+/// The same in units.
+fn extent(plt: &str) -> [f64; 2] {
+    extent_mm(plt).map(|mm| (mm * 40.0).round())
 }
 
 /// 300 dots per inch, px a metre.

@@ -231,6 +231,16 @@ impl Bitmap {
         Self { height: rows.end.saturating_sub(rows.start), words, ..*self }
     }
 
+    /// The ink that another picture of the same size has not; beside one of another size all of it.
+    pub(crate) fn without(mut self, other: &Self) -> Self {
+        if (self.width, self.height) == (other.width, other.height) {
+            for (bits, less) in self.words.iter_mut().zip(&other.words) {
+                *bits &= !less;
+            }
+        }
+        self
+    }
+
     /// The ink of both of two pictures of one size; of pictures of other sizes that of the first.
     pub(crate) fn united(mut self, other: &Self) -> Self {
         if (self.width, self.height) == (other.width, other.height) {

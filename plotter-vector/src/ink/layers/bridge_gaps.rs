@@ -44,6 +44,11 @@ pub(super) fn bridge(own: &Bitmap, others: &Bitmap) -> Bitmap {
     whole
 }
 
+/// Ink grown by so many pixels.
+pub(super) fn grown_by(ink: &Bitmap, px: u32) -> Bitmap {
+    (0..px).fold(ink.clone(), |ink, _| grown(&ink))
+}
+
 /// The ink and the eight neighbours of each of its pixels.
 pub(super) fn grown(ink: &Bitmap) -> Bitmap {
     let mut grown = ink.clone();

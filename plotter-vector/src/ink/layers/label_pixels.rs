@@ -5,7 +5,7 @@
 //! black is grey, but it lies beside black, and where yellow meets blue the pixels between are grey too, but
 //! lie beside yellow and blue.
 
-use super::bridge_gaps::grown;
+use super::bridge_gaps::{grown, grown_by};
 use super::find_pens::{SAME, WHOLE, ink_contrast, nearest};
 use super::histogram::{BINS, Histogram, LEVELS_PER_BIN, bin};
 use super::mixing_line::{MixingLine, mixture};
@@ -146,28 +146,15 @@ fn tables(histogram: &Histogram, lines: &[MixingLine]) -> (Vec<Kind>, Vec<BinLin
     (kinds, places)
 }
 
-/// Ink grown by so many pixels.
-fn grown_by(ink: &Bitmap, px: u32) -> Bitmap {
-    (0..px).fold(ink.clone(), |ink, _| grown(&ink))
-}
-
-/// The pixels of one picture that are not ink of another one.
-fn without(ink: &Bitmap, other: &Bitmap) -> Bitmap {
-    let mut rest = ink.clone();
-    for y in 0..rest.height() {
-        rest.row_mut(y).iter_mut().zip(other.row(y)).for_each(|(bits, other)| *bits &= !other);
-    }
-    rest
-}
-
 /// The pixels that both pictures have as ink.
-fn shared(ink: &Bitmap, other: &Bitmap) -> Bitmap {
-    without(ink, &without(ink, other))
+fn shared(ink: Bitmap, other: &Bitmap) -> Bitmap {
+    let rest = ink.clone().without(other);
+    ink.without(&rest)
 }
 
 /// Moves pixels from a pen's whole ones to the rims.
 fn move_to_rims(whole: &mut Bitmap, rims: &mut Bitmap, kept: Bitmap) {
-    let removed = without(whole, &kept);
+    let removed = whole.clone().without(&kept);
     *rims = core::mem::replace(rims, Bitmap::empty()).united(&removed);
     *whole = kept;
 }
@@ -182,8 +169,8 @@ fn keep_off_rims(whole: &mut [Bitmap], rims: &mut Bitmap, lines: &[MixingLine]) 
             .enumerate()
             .filter(|(other, (darker, _))| *other != pale && line.is_rim_of(darker));
         for (_, (_, darker)) in darker {
-            let apart = without(own, &grown_by(darker, RIM_PX));
-            let kept = shared(own, &grown(&apart));
+            let apart = own.clone().without(&grown_by(darker, RIM_PX));
+            let kept = shared(own.clone(), &grown(&apart));
             move_to_rims(own, rims, kept);
         }
     }

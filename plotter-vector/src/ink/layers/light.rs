@@ -56,7 +56,6 @@ impl Light {
         };
         let (dark, bright) = (at(OUTER), at(1.0 - OUTER));
         light.full = bright;
-        light.full = bright;
         let is_paper = sum(&bright) >= 3.0 * DARKEST_PAPER;
         (is_paper && sum(&dark) < (1.0 - UNEVEN) * sum(&bright)).then_some(light)
     }

@@ -27,10 +27,11 @@ use unassigned::unassigned;
 ///
 /// The paper is the most frequent colour; where the light is uneven, as in a photograph, all colours are first
 /// divided by that of the paper around. A pen is told by the middle of its lines, where its colour is neither
-/// mixed with the paper nor with another pen; around such cores ink belongs to their pens. A pixel is ink of a pen when the pen covers half of it or more on
-/// the way from the paper's colour to the pen's own. Rims, which are mixtures with the paper, go to the pen
-/// that they are a rim of by their direction from the paper, not to the nearest colour: the grey rim of a
-/// black stroke is black. Where two pens meet, a mixed pixel goes to the one that has more of it.
+/// mixed with the paper nor with another pen; around such cores ink belongs to their pens. A pixel is ink of a
+/// pen when the pen covers half of it or more on the way from the paper's colour to the pen's own. Rims, which
+/// are mixtures with the paper, go to the pen that they are a rim of by their direction from the paper, not to
+/// the nearest colour: the grey rim of a black stroke is black. Where two pens meet, a mixed pixel goes to the
+/// one that has more of it.
 ///
 /// ```
 /// # use plotter_vector::{Colour, Rgb, ink::Pens};
@@ -84,8 +85,8 @@ impl core::error::Error for PensError {}
 impl Pens {
     /// Shares the ink of a picture among the pens. Found pens are numbered from 1, the darkest first.
     ///
-    /// Takes one bit a pixel and pen five times over, a byte a pixel, three more in uneven light, and 2 MB. The result depends on nothing but the
-    /// picture.
+    /// Takes one bit a pixel and pen five times over, a byte a pixel, three more in uneven light, and 2 MB.
+    /// The result depends on nothing but the picture.
     ///
     /// # Errors
     /// [`PensError`].

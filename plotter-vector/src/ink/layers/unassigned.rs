@@ -1,6 +1,6 @@
 //! [`Unassigned`]: ink that no pen got.
 
-use super::bridge_gaps::grown;
+use super::bridge_gaps::grown_by;
 use crate::ink::pen_width_px;
 use crate::picture::{Bitmap, Pixel};
 
@@ -29,13 +29,7 @@ pub(super) fn unassigned<'a>(
     for pen in of_pens {
         got = got.united(pen);
     }
-    for _ in 0..RIM_PX {
-        got = grown(&got);
-    }
-    let mut rest = ink.clone();
-    for y in 0..rest.height() {
-        rest.row_mut(y).iter_mut().zip(got.row(y)).for_each(|(bits, got)| *bits &= !got);
-    }
+    let mut rest = ink.clone().without(&grown_by(&got, RIM_PX));
     let least_px = LEAST_WIDTHS * pen_width_px(ink).unwrap_or(1);
     let mut found: Option<Unassigned> = None;
     let mut next = rest.ink().next();
