@@ -114,6 +114,26 @@ impl Disc {
         index(self.side / 2)
     }
 
+    /// Side of its box, px.
+    pub(super) const fn side_px(&self) -> usize {
+        self.side
+    }
+
+    /// Side of the box of compact ink that it fits into, at most, px.
+    pub(super) fn most_px(&self) -> u32 {
+        index(5 * self.side / 2)
+    }
+
+    /// How far lines are followed away from such ink, px: two widths of the widest line.
+    pub(super) fn followed_px(&self) -> u32 {
+        index(2 * self.side)
+    }
+
+    /// What it covers where it is moved about inside the ink (opening).
+    pub(super) fn opened(&self, ink: &Bitmap) -> Bitmap {
+        if self.fits(ink) { self.cover(ink, &self.places(ink)) } else { empty_like(ink) }
+    }
+
     /// Rows and columns of the box beyond its first.
     pub(super) fn reach(&self) -> u32 {
         index(self.side.saturating_sub(1))

@@ -1,17 +1,19 @@
 //! Areas: ink wider than a line, to be outlined or hatched.
 
+mod clump;
 mod disc;
 mod hatch;
 mod inset;
 mod islands;
+mod opening;
 mod outline;
 mod split;
 
 pub use hatch::{Hatch, MIN_PITCH_PX};
 pub use inset::inset_outlines;
 pub(crate) use islands::Islands;
+pub(crate) use opening::Opening;
 pub use outline::{Outline, Outlines};
-pub(crate) use split::Opening;
 pub use split::{MAX_LINE_PX, WidthSplit, split_by_width};
 
 use crate::{picture::Bitmap, stroke::PxPoint};

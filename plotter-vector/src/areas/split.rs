@@ -1,7 +1,7 @@
 //! [`split_by_width`]: areas and lines of one picture, told apart by their width.
 
-use super::disc::{Disc, empty_like, index};
-use super::inset::pen_radius_px;
+use super::Opening;
+use super::disc::index;
 use crate::picture::Bitmap;
 
 /// Widest line that can be asked for, px: 10.8 mm at 1200 dots per inch. Wider ones act as this one.
@@ -17,7 +17,7 @@ pub struct WidthSplit {
 }
 
 /// Longest leftover that an area keeps, px: half a side of the disc, so that corners down to 60° stay whole.
-const fn absorbed_px(line_px: u32) -> u32 {
+pub(super) const fn absorbed_px(line_px: u32) -> u32 {
     (line_px + 1).div_ceil(2)
 }
 
@@ -60,95 +60,6 @@ pub fn split_by_width(ink: &Bitmap, max_line_px: u32) -> WidthSplit {
     Opening::of_lines(max_line_px).split_of(ink)
 }
 
-/// What tells areas from lines: a disc that fits into areas only.
-#[derive(Clone, Debug)]
-pub(crate) struct Opening {
-    disc: Disc,
-    /// Longest leftover that an area keeps, px.
-    absorbed_px: u32,
-    /// What is wider is an area, px; of lines, a pixel for the raster on each side.
-    widest_line_px: f64,
-}
-
-impl Opening {
-    /// Areas are wider than lines of `max_line_px`, as [`split_by_width`] says.
-    pub(crate) fn of_lines(max_line_px: u32) -> Self {
-        let line = max_line_px.min(MAX_LINE_PX);
-        Self {
-            disc: Disc::wider_than_lines(line),
-            absorbed_px: absorbed_px(line),
-            widest_line_px: f64::from(line) + 2.0,
-        }
-    }
-
-    /// Areas are what [`inset_outlines`](crate::areas::inset_outlines()) goes around with half of `pen_px`,
-    /// with leftovers up to half a side of the disc; what it leaves out is lines.
-    pub(crate) fn of_pen(pen_px: f64) -> Self {
-        let disc = Disc::of_radius(pen_radius_px(pen_px / 2.0).unwrap_or(0.0));
-        let absorbed_px = disc.half();
-        Self { disc, absorbed_px, widest_line_px: pen_px }
-    }
-
-    /// What is wider is an area, px.
-    pub(crate) fn widest_line_px(&self) -> f64 {
-        self.widest_line_px
-    }
-
-    /// Rows above and below a band that decide about its own.
-    pub(crate) fn rows_of_context(&self) -> u32 {
-        self.disc.reach() + 4 * self.absorbed_px
-    }
-
-    /// Splits a picture where it lies: the lines, and the areas if there are any.
-    pub(crate) fn split(&self, ink: Bitmap) -> (Bitmap, Option<Bitmap>) {
-        let disc = &self.disc;
-        if !disc.fits(&ink) {
-            return (ink, None);
-        }
-        let places = disc.places(&ink);
-        let thick = disc.cover(&ink, &places);
-        drop(places);
-        let mut thin = ink;
-        for y in 0..thin.height() {
-            thin.row_mut(y).iter_mut().zip(thick.row(y)).for_each(|(thin, thick)| *thin &= !thick);
-        }
-        let mut split = WidthSplit { thick, thin };
-        split.give_leftovers_to_areas(self.absorbed_px);
-        (split.thin, Some(split.thick))
-    }
-
-    /// As [`Opening::split`], of a picture that is kept.
-    pub(crate) fn split_of(&self, ink: &Bitmap) -> WidthSplit {
-        let (thin, thick) = self.split(ink.clone());
-        WidthSplit { thick: thick.unwrap_or_else(|| empty_like(ink)), thin }
-    }
-
-    /// Ink without the insides of its areas, which are the pixels of areas with ink all around them: what
-    /// strokes have to come near.
-    pub(crate) fn without_insides(&self, ink: Bitmap) -> Bitmap {
-        let WidthSplit { thick, .. } = self.split_of(&ink);
-        let mut kept = ink.clone();
-        for y in (0..ink.height()).filter(|y| thick.row(*y).iter().any(|bits| *bits != 0)) {
-            let row = |y: Option<u32>| y.filter(|y| *y < ink.height()).map_or(&[][..], |y| ink.row(y));
-            let rows = [row(y.checked_sub(1)), row(Some(y)), row(y.checked_add(1))];
-            // Words without ink where the picture ends.
-            let word = |index: Option<usize>| {
-                let of = |row: &[u64]| index.and_then(|index| row.get(index)).copied().unwrap_or(0);
-                rows.into_iter().fold(u64::MAX, |all, row| all & of(row))
-            };
-            for (index, (kept, thick)) in kept.row_mut(y).iter_mut().zip(thick.row(y)).enumerate() {
-                if *thick != 0 {
-                    let (left, own, right) =
-                        (word(index.checked_sub(1)), word(Some(index)), word(index.checked_add(1)));
-                    let within = own & (own << 1 | left >> 63) & (own >> 1 | right << 63);
-                    *kept &= !(thick & within);
-                }
-            }
-        }
-        kept
-    }
-}
-
 impl WidthSplit {
     /// Moves those thin pixels to the areas that belong to no line longer than `reach_px`.
     ///
@@ -157,7 +68,7 @@ impl WidthSplit {
     ///   area  1   ▲            a line gives back what leads down to the area, one number at a step;
     ///   area  1 2              what is left and hangs together with the area stays there
     /// ```
-    fn give_leftovers_to_areas(&mut self, reach_px: u32) {
+    pub(super) fn give_leftovers_to_areas(&mut self, reach_px: u32) {
         let mut spread = Spread::new(&self.thin);
         let mut layers = Vec::new();
         let mut candidates = self.thin_words_beside_areas();
@@ -313,22 +224,6 @@ mod tests {
     fn split(text: &str, max_line_px: u32) -> (String, String) {
         let split = split_by_width(&Bitmap::from_picture(text).unwrap(), max_line_px);
         (split.thick.to_string(), split.thin.to_string())
-    }
-
-    #[test]
-    fn the_insides_of_areas_have_ink_all_around_them() {
-        // Across the end of a word; the area's edge where a line runs into it counts, too.
-        let rows = |row: &str| format!("{}{row}\n", ".".repeat(58));
-        let text: String =
-            [".........", ".######..", ".########", ".######..", ".######..", ".........", "#########"]
-                .map(rows)
-                .concat();
-        let ink = Bitmap::from_picture(&text).unwrap();
-        let left: String =
-            [".........", ".######..", ".#....###", ".#....#..", ".######..", ".........", "#########"]
-                .map(rows)
-                .concat();
-        assert_eq!(Opening::of_lines(2).without_insides(ink).to_string(), left);
     }
 
     #[test]

@@ -9,6 +9,17 @@ const WIDEST_PX: u32 = 64;
 /// is no wider than they are.
 pub(crate) const WIDEST_BESIDE_AREAS_PX: u32 = WIDEST_PX / 6;
 
+/// Runs of a pen's lines are between so many tenths of its width long, most of them: across lines in all
+/// directions, but not along them.
+const NEAR_TENTHS: core::ops::RangeInclusive<u64> = 6..=16;
+
+/// Fewer of all runs than so many in a hundred tell no pen. A silhouette of a horse has 35; drawings of lines
+/// of one and of two widths, lettering and brushes 43 and more, most of them 60 to 90.
+const LEAST_NEAR: u64 = 40;
+
+/// What is narrower, px, is a pen or so small that its width says nothing.
+const LEAST_SILHOUETTE_PX: u32 = 6;
+
 /// Finds the width of the pen from the ink of a picture, row by row from the top.
 ///
 /// A straight line of width w that makes the angle θ with the rows is crossed by its columns in runs of w /
@@ -43,6 +54,16 @@ impl Runs {
         if let Some(n) = self.0.get_mut(length.min(WIDEST_PX + 1) as usize) {
             *n += 1;
         }
+    }
+
+    /// Whether so many of the runs are about as long as a pen of this width is wide that it may be one.
+    fn tell_a_pen(&self, width_px: u32) -> bool {
+        let all: u64 = self.0.iter().sum();
+        let near = (0_u64..).zip(self.0).filter(|(length, _)| {
+            let width = u64::from(width_px);
+            (NEAR_TENTHS.start() * width..=NEAR_TENTHS.end() * width).contains(&(10 * length))
+        });
+        100 * near.map(|(_, n)| n).sum::<u64>() >= LEAST_NEAR * all
     }
 
     /// The length that a third of all runs do not exceed, px; that of a longer run than any that is told
@@ -96,14 +117,22 @@ impl LineWidth {
     /// Width of the pen, px, and where most of the ink is wider than 64 px that of what is not, at most 10
     /// px; `None` without any of that.
     #[must_use]
-    pub fn finish_beside_areas(mut self) -> Option<u32> {
+    pub fn finish_beside_areas(self) -> Option<u32> {
+        self.finish_or_silhouette().0
+    }
+
+    /// The same, and whether no pen is likely to have drawn the ink, for hardly any of it is as wide: then it
+    /// is the silhouette of something.
+    pub(crate) fn finish_or_silhouette(mut self) -> (Option<u32>, bool) {
         self.end();
-        self.runs.shortest_third().filter(|width| *width <= WIDEST_PX).or_else(|| {
-            if let Some(longer) = self.runs.0.last_mut() {
-                *longer = 0;
-            }
-            self.runs.shortest_third().map(|width| width.min(WIDEST_BESIDE_AREAS_PX))
-        })
+        let width = self.runs.shortest_third().filter(|width| *width <= WIDEST_PX);
+        if let Some(width) = width {
+            return (Some(width), width >= LEAST_SILHOUETTE_PX && !self.runs.tell_a_pen(width));
+        }
+        if let Some(longer) = self.runs.0.last_mut() {
+            *longer = 0;
+        }
+        (self.runs.shortest_third().map(|width| width.min(WIDEST_BESIDE_AREAS_PX)), false)
     }
 
     /// One row of paper settles the last row, another ends its runs.

@@ -16,6 +16,8 @@ pub(crate) struct Pen {
     pub(crate) width_px: u32,
     /// What thin lines are.
     pub(crate) hairlines: Hairlines,
+    /// Whether the ink has no width that is common: no pen has drawn it.
+    pub(crate) is_silhouette: bool,
 }
 
 impl Pen {
@@ -50,7 +52,7 @@ impl PenSurvey {
     /// The pen, and the number of ink pixels.
     pub(crate) fn finish(self) -> (Pen, u64) {
         let Self { width, steps, ink_pixels } = self;
-        let (found_px, steps) = (width.finish_beside_areas(), steps.finish());
+        let ((found_px, is_silhouette), steps) = (width.finish_or_silhouette(), steps.finish());
         let (found_px, width_px) = if is_raster_lines(steps.blocks, ink_pixels) {
             (found_px.map(|_| 1), 1)
         } else {
@@ -58,7 +60,7 @@ impl PenSurvey {
         };
         let are_thin = width_px <= WIDEST_HAIRLINE_PX;
         let hairlines = if are_thin { steps.hairlines(ink_pixels) } else { Hairlines::Raster };
-        (Pen { found_px, width_px, hairlines }, ink_pixels)
+        (Pen { found_px, width_px, hairlines, is_silhouette }, ink_pixels)
     }
 }
 

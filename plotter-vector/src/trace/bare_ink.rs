@@ -112,6 +112,7 @@ impl BareInk<'_> {
                     self.cover(ink, first_row, bare, &mut found);
                 }
                 self.join(ink, first_row, &mut found);
+                found.retain(|stroke| self.spots || !self.is_hair(stroke));
                 strokes.append(&mut found);
             }
         }
@@ -175,6 +176,14 @@ impl BareInk<'_> {
         let meets = far_px <= 2.0 * self.drawn.slack_px(from) + 2.0 * RASTER_PX
             && (0..=parts).all(|part| is_ink(f64::from(part) / f64::from(parts)));
         meets.then_some(turns)
+    }
+
+    /// Whether a stroke is shorter than the pen that draws it is wide, and leads over ink that is covered:
+    /// lifting the pen for it costs more than what it covers beside its way is worth.
+    fn is_hair(&self, stroke: &Curve) -> bool {
+        let half_px = stroke.vertices.first().map_or(0.0, |at| self.drawn.slack_px(*at));
+        let is_covered = |at: &PxPoint| self.drawn.error_px(*at, &mut 0) <= 0.0;
+        stroke.length_px() < 2.0 * half_px && stroke.vertices.iter().all(is_covered)
     }
 
     /// Whether pixels are a spot that is worth no stroke of its own: farther off than allowed by no more than

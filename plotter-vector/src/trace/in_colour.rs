@@ -82,14 +82,15 @@ impl Vectorizer {
         let mut inks = Vec::with_capacity(layers.palette().pens().len());
         let mut openings = Vec::with_capacity(inks.capacity());
         let mut tracing = progress.part(TRACED);
-        let mut removed = Despeckled::default();
+        let (mut removed, mut thinnest_px) = (Despeckled::default(), u32::MAX);
         for (done, (index, (pen, own))) in (1..).zip(layers.iter().enumerate()) {
             let mut ink = layers.bridged(index).unwrap_or_else(|| own.clone());
             let grey = layers.coverage(index, &ink, picture);
-            let Unordered { drawing: strokes, errors, areas, removed: dirt } =
+            let Unordered { drawing: strokes, errors, areas, pen_px, removed: dirt } =
                 self.unordered(&mut ink, grey.as_ref().map(|levels| (levels, true)))?;
             let (strokes, _) = self.completed(strokes, errors, &ink, areas.as_ref());
             removed = removed.and(dirt);
+            thinnest_px = thinnest_px.min(pen_px);
             for stroke in 0..strokes.strokes().len() {
                 drawing.push_curve(pen.number, strokes.curve(stroke));
             }
@@ -97,7 +98,7 @@ impl Vectorizer {
             openings.push(areas);
             tracing.at(done, of)?;
         }
-        (drawing, _) = self.in_order(drawing, None);
+        (drawing, _) = self.in_order(drawing, None, thinnest_px);
         progress.part(ORDERED).at(1, 1)?;
         let (mut tally, mut beyond) = (ErrorTally::default(), Beyond::default());
         let mut measuring = progress.part(1.0);

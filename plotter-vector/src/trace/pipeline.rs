@@ -257,9 +257,9 @@ impl Vectorizer {
         grey: Option<(&Gray, bool)>,
         left_out: usize,
     ) -> Result<Vectorized, VectorizeError> {
-        let Unordered { drawing, errors, areas, removed } = self.unordered(&mut ink, grey)?;
+        let Unordered { drawing, errors, areas, pen_px, removed } = self.unordered(&mut ink, grey)?;
         let (drawing, errors) = self.completed(drawing, errors, &ink, areas.as_ref());
-        let (drawing, errors) = self.in_order(drawing, errors);
+        let (drawing, errors) = self.in_order(drawing, errors, pen_px);
         let errors = self.known_or_measured(errors, &ink, &drawing, areas.as_ref());
         Ok(Vectorized {
             error: errors.report,
@@ -313,11 +313,13 @@ impl Vectorizer {
     }
 
     /// The strokes of ours joined over gaps, without short ones, and in their order. What is left out makes
-    /// errors that are no longer known.
+    /// errors that are no longer known. Strokes end to end are one where a pen of `pen_px` that ends the one
+    /// overlaps with one that begins the other: there is no paper between.
     pub(crate) fn in_order(
         &self,
         mut drawing: Drawing,
         errors: Option<SheetErrors>,
+        pen_px: u32,
     ) -> (Drawing, Option<SheetErrors>) {
         if self.algorithm == Algorithm::Published {
             return (drawing, errors);
@@ -330,7 +332,13 @@ impl Vectorizer {
             drawing = without_short(drawing, self.min_stroke_px);
             errors = None;
         }
-        (self.order.apply(&drawing), errors)
+        let order = if pen_px > 1 {
+            let merge_gap_px = self.order.merge_gap_px.max(pen_px.into());
+            Order { merge_gap_px, bridges_corners: true, ..self.order }
+        } else {
+            self.order
+        };
+        (order.apply(&drawing), errors)
     }
 
     /// Whether strokes are added for what is bare.
@@ -379,7 +387,7 @@ impl Vectorizer {
         if self.algorithm == Algorithm::Published {
             let (drawing, errors) = self.published(ink)?;
             let removed = Despeckled::default();
-            return Ok(Unordered { drawing, errors: Some(errors), areas: None, removed });
+            return Ok(Unordered { drawing, errors: Some(errors), areas: None, pen_px: 1, removed });
         }
         self.check()?;
         let ink_pixels = ink.count();
@@ -388,15 +396,15 @@ impl Vectorizer {
             let (drawing, errors) = self.tracked(ink, pen.hairlines)?;
             // Of what is not straight the errors are not known from the figures.
             let errors = drawing.is_straight().then_some(errors);
-            return Ok(Unordered { drawing, errors, areas: None, removed });
+            return Ok(Unordered { drawing, errors, areas: None, pen_px: 1, removed });
         }
         let strokes = self.strokes(ink, grey, pen)?;
         let mut drawing = Drawing::new(ink.width(), ink.height());
         for stroke in strokes {
             drawing.push_curve(1, within(stroke, ink.width(), ink.height()));
         }
-        let areas = Some(self.opening(pen.width_px));
-        Ok(Unordered { drawing, errors: None, areas, removed })
+        let areas = Some(self.opening(pen));
+        Ok(Unordered { drawing, errors: None, areas, pen_px: pen.width_px, removed })
     }
 
     /// Takes the dirt out of ink; the pen that drew it, and what was taken.
@@ -424,7 +432,7 @@ impl Vectorizer {
         grey: Option<(&Gray, bool)>,
         pen: Pen,
     ) -> Result<Vec<Curve>, VectorizeError> {
-        let split = self.opening(pen.width_px).split_of(ink);
+        let split = self.opening(pen).split_of(ink);
         let centring = self.centring_of(pen);
         let mut strokes = centring.strokes(&split.thin, grey);
         let areas = &split.thick;
@@ -462,10 +470,12 @@ impl Vectorizer {
     }
 
     /// What tells areas from lines.
-    pub(crate) fn opening(&self, pen_px: u32) -> Opening {
-        match self.mode {
-            Mode::Outline => Opening::of_pen(self.areas.pen_px),
-            Mode::Centreline | Mode::Mixed => Opening::of_lines(self.max_line_px(pen_px)),
+    pub(crate) fn opening(&self, pen: Pen) -> Opening {
+        let outlines_all = self.mode == Mode::Outline || pen.is_silhouette && self.max_line_px.is_none();
+        if outlines_all {
+            Opening::of_pen(self.areas.pen_px)
+        } else {
+            Opening::of_drawing(self.max_line_px(pen.width_px), pen.width_px)
         }
     }
 
@@ -574,6 +584,8 @@ pub(crate) struct Unordered {
     pub(crate) errors: Option<SheetErrors>,
     /// What told areas from lines, where something did.
     pub(crate) areas: Option<Opening>,
+    /// Width of the pen, px; 1 where the strokes are the pixels.
+    pub(crate) pen_px: u32,
     /// What was taken for dirt.
     pub(crate) removed: Despeckled,
 }

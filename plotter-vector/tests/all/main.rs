@@ -33,6 +33,7 @@ mod line_ends;
 mod lines;
 #[cfg(feature = "svg-text")]
 mod made_font;
+mod marks_on_lines;
 mod off_lines;
 #[cfg(feature = "image")]
 mod order_against_vpype;

@@ -38,6 +38,11 @@ pub(crate) struct Across {
 const BESIDE_PX: f64 = 1.5;
 
 impl Across {
+    /// Whether the segment is drawn down the middle of the ink.
+    pub(super) fn is_middle(self) -> bool {
+        STEP_PX * f64::from(self.width) <= 2.0 * STEP_PX * f64::from(self.nearer) + BESIDE_PX
+    }
+
     /// Of the line that is drawn there, px.
     pub(super) fn width_px(self) -> f64 {
         let beside_px = 2.0 * STEP_PX * f64::from(self.nearer) + BESIDE_PX;

@@ -64,12 +64,26 @@ pub(crate) fn set_widths(
         if width.pen_px.is_none() && !is_wedge {
             Width { pen_px: Some(2.0 * pen_px), ..width }.set(stroke, widths, areas);
         }
-        // A dot and a short stroke are made by that pen.
+        // A dot and a short stroke are made by that pen, but for one down the middle of a line of another.
         let length_px: f64 = stroke.iter().map(PenSegment::length_px).sum();
+        let is_line = |own_px: f64| own_px > TWO_PENS * 2.0 * pen_px && length_px >= LINE_WIDTHS * own_px;
+        if width.pen_px.is_some_and(is_line) && is_down_the_middle(widths) {
+            continue;
+        }
         for piece in stroke.iter_mut().filter(|piece| length_px < SHORT_HALVES * piece.slack_px) {
             piece.limit(WIDEST_SHORT * pen_px + STEP_PX);
         }
     }
+}
+
+/// Whether most probes of a stroke are as far from the one edge of the ink as from the other.
+fn is_down_the_middle(widths: &[[Across; PROBES.len()]]) -> bool {
+    let (mut all, mut middle) = (0, 0);
+    for at in widths.iter().flatten().filter(|at| at.width > 0) {
+        all += 1;
+        middle += usize::from(at.is_middle());
+    }
+    10 * middle >= 8 * all
 }
 
 /// Whether two widths of a line are one, but for the raster's jumps.

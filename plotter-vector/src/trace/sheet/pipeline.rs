@@ -75,7 +75,7 @@ impl<'a> SheetPipeline<'a> {
     ) -> Self {
         let smallest_px = settings.smallest_mark_px(pen.width_px);
         let centring = settings.centring_of(pen);
-        let opening = settings.opening(pen.width_px);
+        let opening = settings.opening(pen);
         let row_bytes = row_bytes(width);
         let grey = threshold.has_greys();
         let band_bytes = if grey { GREY_BAND_BYTES } else { BAND_BYTES };
