@@ -14,7 +14,9 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use drawings::Drawing;
 use plotter_motion::kinematics::{Cartesian, MotorScale};
 use plotter_motion::{
-    PathMode, Planner, PlannerSettings, PlotOp, StepGen, planner::Action, stepgen::StepGenSettings,
+    PathMode, Planner, PlannerSettings, PlotOp, StepGen,
+    planner::{AccelLimit, Action},
+    stepgen::StepGenSettings,
 };
 use std::hint::black_box;
 
@@ -23,6 +25,24 @@ fn modes() -> [(&'static str, PlannerSettings); 3] {
     let tolerance = PlannerSettings { path: PathMode::Tolerance { path_tolerance_mm: 0.05 }, ..exact };
     let curved = PlannerSettings { jerk_mm_s3: Some(20_000.0), ..exact };
     [("exact", exact), ("tolerance", tolerance), ("exact s-curve", curved)]
+}
+
+/// Those of every kind of limit and of path.
+fn planned_modes() -> [(&'static str, PlannerSettings); 8] {
+    let [exact, tolerance, curved] = modes();
+    let with = |settings, accel_limit| PlannerSettings { accel_limit, ..settings };
+    let axes = AccelLimit::Axes { x_mm_s2: 1000.0, y_mm_s2: 800.0 };
+    let belts = AccelLimit::Belts { sum_mm_s2: 1000.0, difference_mm_s2: 900.0 };
+    [
+        exact,
+        tolerance,
+        curved,
+        ("exact, allowance of 0.01 mm", PlannerSettings { allowance_mm: 0.01, ..exact.1 }),
+        ("exact, axes", with(exact.1, axes)),
+        ("tolerance, axes", with(tolerance.1, axes)),
+        ("exact, belts", with(exact.1, belts)),
+        ("tolerance, belts", with(tolerance.1, belts)),
+    ]
 }
 
 /// Every action of a drawing, with 16 blocks of look-ahead.
@@ -46,9 +66,9 @@ fn plan(settings: PlannerSettings, ops: &[PlotOp], mut each: impl FnMut(Action))
 
 fn planned_segments(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("planned segments");
-    for Drawing { name, ops } in [drawings::spiral(20), drawings::zigzag(1000)] {
+    for Drawing { name, ops } in drawings::built().into_iter().chain(drawings::real()) {
         group.throughput(Throughput::Elements(ops.len() as u64));
-        for (mode, settings) in modes() {
+        for (mode, settings) in planned_modes() {
             group.bench_with_input(BenchmarkId::new(mode, name), &ops, |bench, ops| {
                 bench.iter(|| {
                     plan(settings, ops, |action| {

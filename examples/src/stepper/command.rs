@@ -46,7 +46,7 @@ pub struct StepperCommand {
     /// digit that the file writes, or a step, whichever is greater]
     #[arg(long, value_name = "A", value_parser = allowance, allow_negative_numbers = true)]
     pub(super) allowance_mm: Option<f64>,
-    /// Limits the jerk too
+    /// Limits the jerk along the path too
     #[arg(long)]
     pub(super) s_curve: bool,
     /// Greatest speed with the pen down and up, mm/s [default: the machine's, 45 and 90]
@@ -62,7 +62,7 @@ pub struct StepperCommand {
     /// machine's, 0.01]
     #[arg(long, value_name = "D", value_parser = not_negative, allow_negative_numbers = true)]
     pub(super) junction_deviation: Option<f64>,
-    /// Greatest jerk, mm/s³; counts with --s-curve [default: the machine's, 10000]
+    /// Greatest jerk along the path, mm/s³; counts with --s-curve [default: the machine's, 10000]
     #[arg(long, value_name = "J", value_parser = positive, allow_negative_numbers = true)]
     pub(super) jerk: Option<f64>,
     /// Steps to the millimetre of both motors [default: the machine's, 87.58]

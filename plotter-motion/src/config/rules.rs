@@ -113,7 +113,7 @@ const SIGN_OF_GAIN: &str = "for a motor that runs away swap its wires, not the s
 const DUTY_OF_255: &str = "duty counts in steps of 255, as the published gains do";
 
 /// Keys that the machine has once.
-static MACHINE: [Rule; 70] = [
+static MACHINE: [Rule; 71] = [
     Rule { key: "schema", form: Form::Whole(SCHEMA) },
     Rule { key: "name", form: Form::Text(super::MachineName::MAX_BYTES) },
     Rule { key: "drive", form: Form::Choice(&["dc", "stepper"]) },
@@ -441,6 +441,13 @@ static MACHINE: [Rule; 70] = [
         (0.0, 100.0),
         "N m s",
         "friction is given as a size, without sign: 0 for none",
+    ),
+    number(
+        "stepper_motor.damping_n_m_s",
+        |c| c.stepper_motor.damping_n_m_s,
+        (0.0, 100.0),
+        "N m s",
+        "0 is a motor whose swing nothing damps but friction",
     ),
     Rule { key: "vectorize.mode", form: Form::Choice(&["centreline", "outline", "mixed"]) },
     number(

@@ -47,8 +47,8 @@ pub(super) struct Front<M: Modes> {
     pen: Pen,
     power: u16,
     run: Option<Run>,
-    /// Square of the greatest speed on a segment that is too short for a block and is held back.
-    short_cruise2: Option<f32>,
+    /// Square of the greatest speed on a segment that is too short for a block and is held back; 0 if none is.
+    short_cruise2: f32,
     put_off: M::Kept<PutOff>,
     shares: M::Kept<Shares>,
     /// Whether lines are jogs.
@@ -66,7 +66,7 @@ impl<M: Modes> Front<M> {
             pen: Pen::Up,
             power: u16::MAX,
             run: None,
-            short_cruise2: None,
+            short_cruise2: 0.0,
             put_off: M::Kept::default(),
             shares: M::Kept::default(),
             jogs: false,
@@ -80,7 +80,7 @@ impl<M: Modes> Front<M> {
 
     /// The end of an arc whose chords have not all been given out.
     fn arc_end(&self) -> Option<Point> {
-        self.put_off.rounding().and_then(|rounding| rounding.arc).map(|(arc, _)| arc.to)
+        self.put_off.rounding().and_then(|rounding| rounding.arc).map(|arc| arc.to)
     }
 
     /// Whether an arc has chords left. They come before anything else is taken.
@@ -92,10 +92,9 @@ impl<M: Modes> Front<M> {
     pub(super) fn take_chords<const N: usize>(&mut self, limits: &Limits, ring: &mut Ring<N>) -> bool {
         let mut any = false;
         while ring.room() >= Self::most_blocks(&limits.settings)
-            && let Some((arc, cruise2)) =
-                self.put_off.rounding_mut().and_then(|rounding| rounding.arc.as_mut())
+            && let Some(arc) = self.put_off.rounding_mut().and_then(|rounding| rounding.arc.as_mut())
         {
-            let (place, cruise2) = (arc.next_place(), *cruise2);
+            let (place, cruise2) = (arc.next_place(), arc.cruise2);
             if arc.is_over()
                 && let Some(rounding) = self.put_off.rounding_mut()
             {
@@ -224,7 +223,7 @@ impl<M: Modes> Front<M> {
         if let PathMode::Tolerance { .. } = limits.settings.path_of::<M>()
             && let Some(rounding) = self.put_off.rounding_mut()
         {
-            rounding.has_arcs = false;
+            rounding.merger.has_arcs = false;
         }
     }
 
@@ -281,9 +280,9 @@ impl<M: Modes> Front<M> {
             PathMode::Exact => {
                 let way = Way::new(run.at.way_to(to));
                 if way.length_mm < limits.resolution_mm {
-                    self.short_cruise2 = Some(cruise2);
+                    self.short_cruise2 = cruise2;
                 } else {
-                    self.short_cruise2 = None;
+                    self.short_cruise2 = 0.0;
                     self.emit_way(to, way, cruise2, limits, ring);
                 }
             }
@@ -420,9 +419,10 @@ impl<M: Modes> Front<M> {
             && let Some(rounding) = self.put_off.rounding_mut()
         {
             let chord_mm = CHORD_SHARE * path_tolerance_mm;
-            let divided = DividedArc::new(self.position, *centre, sweep_rad.into(), *to, chord_mm);
-            rounding.arc = Some((divided, cruise2));
-            rounding.has_arcs = true;
+            let mut arc = DividedArc::new(self.position, *centre, sweep_rad.into(), *to, chord_mm);
+            arc.cruise2 = cruise2;
+            rounding.arc = Some(arc);
+            rounding.merger.has_arcs = true;
             self.take_chords(limits, ring);
             return;
         }
@@ -442,7 +442,8 @@ impl<M: Modes> Front<M> {
 
     /// Gives out the segments that were held back. The run goes on.
     fn flush<const N: usize>(&mut self, limits: &Limits, ring: &mut Ring<N>) {
-        if let Some(cruise2) = self.short_cruise2.take() {
+        let cruise2 = core::mem::take(&mut self.short_cruise2);
+        if cruise2 > 0.0 {
             let at = self.position;
             self.emit_line(&at, cruise2, limits, ring);
         }
@@ -467,7 +468,7 @@ impl<M: Modes> Front<M> {
             }
             let last = self.put_off.rounding_mut().and_then(|rounding| rounding.held.take());
             if let Some(held) = last {
-                self.round(&held.to, 0.0, limits, ring);
+                self.round(&held.to, 0.0, held.pace, limits, ring);
                 let power = core::mem::replace(&mut self.power, held.pace.power);
                 self.emit_line(&held.to, held.pace.cruise2, limits, ring);
                 self.power = power;
@@ -493,40 +494,48 @@ impl<M: Modes> Front<M> {
         let may_be = |vertex: &Vertex| {
             let in_mm = (vertex.moved - moved).length_near();
             let tangent_mm = if before.is_some() { 0.5 * in_mm } else { in_mm };
-            vertex.is_passed(&moved, &next.to, tangent_mm, limits)
+            vertex.is_passed((&moved, &next.to), tangent_mm, next.pace, limits)
                 && before.is_none_or(|before| {
                     let in_mm = (before.moved - run.at).length_near();
-                    before.is_passed(&run.at, &vertex.moved, in_mm, limits)
+                    before.is_passed((&run.at, &vertex.moved), in_mm, held.pace, limits)
                 })
         };
         let vertex = Vertex::new(&asked, (&held, &next), within_mm, limits, may_be);
-        self.round(&vertex.moved, vertex.most_tangent_mm(&asked, &next.to), limits, ring);
+        let next_mm = vertex.most_tangent_mm(&asked, &next.to);
+        self.round(&vertex.moved, next_mm, held.pace, limits, ring);
         if let Some(rounding) = self.put_off.rounding_mut() {
             rounding.corner = Some(vertex);
         }
     }
 
     /// Rounds the last corner. From there the path goes on to `to`, the next corner, which can use no more
-    /// than `next_mm` of the line between.
-    fn round<const N: usize>(&mut self, to: &Point, next_mm: f64, limits: &Limits, ring: &mut Ring<N>) {
+    /// than `next_mm` of the line between, at the pace `after`.
+    fn round<const N: usize>(
+        &mut self,
+        to: &Point,
+        next_mm: f64,
+        after: Pace,
+        limits: &Limits,
+        ring: &mut Ring<N>,
+    ) {
         let corner = self.put_off.rounding_mut().and_then(|rounding| rounding.corner.take());
         let (Some(corner), Some(run)) = (corner, self.run) else { return };
         let power = core::mem::replace(&mut self.power, corner.before.power);
         // The blocks given out so far reach to the end of the curve at the previous corner.
         let (way_in, way_out) = (corner.moved - run.at, *to - corner.moved);
         let (in_mm, out_mm) = (way_in.length_near(), way_out.length_near());
-        let (along, after) = (way_in * (1.0 / in_mm), way_out * (1.0 / out_mm));
+        let ways = (way_in * (1.0 / in_mm), way_out * (1.0 / out_mm));
         let blend = if in_mm > 0.0 && out_mm > 0.0 {
             // The next corner keeps its half of the line between, or as much as it can use.
-            corner.blend((along, after), in_mm.min((0.5 * out_mm).max(out_mm - next_mm)), limits)
+            corner.blend(ways, in_mm.min((0.5 * out_mm).max(out_mm - next_mm)), after, limits)
         } else {
             None
         };
         if let Some((tangent_mm, curve)) = blend {
             // Given out however short it is: the curve must begin exactly here.
             if in_mm - tangent_mm > SHORTEST_MM {
-                let begin = corner.moved - along * tangent_mm;
-                let way = Way { length_mm: single(in_mm - tangent_mm), direction: direction(along) };
+                let begin = corner.moved - ways.0 * tangent_mm;
+                let way = Way { length_mm: single(in_mm - tangent_mm), direction: direction(ways.0) };
                 self.emit_way(&begin, way, corner.before.cruise2, limits, ring);
             }
             self.emit(curve, limits, ring);

@@ -89,7 +89,7 @@ pub(super) fn corner_speed2(before: [f32; 2], after: [f32; 2], shorter_mm: f32, 
     let (sin_half, cos_half) = (sin_half * (1.0 - LEAST_TURN), cos_half + LEAST_TURN);
     // The part of the acceleration that it takes points from one direction to the other.
     let change =
-        if limits.motors.is_some() { [u - x, v - y].map(|way| way / (2.0 * cos_half)) } else { after };
+        if limits.each_motor().is_some() { [u - x, v - y].map(|way| way / (2.0 * cos_half)) } else { after };
     let of_deviation = limits.junction_deviation_mm * (1.0 + sin_half) / cos_half;
     limits.along(change) * sin_half / cos_half * least(of_deviation, 0.5 * shorter_mm)
 }
@@ -97,8 +97,8 @@ pub(super) fn corner_speed2(before: [f32; 2], after: [f32; 2], shorter_mm: f32, 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::PlannerSettings;
     use crate::geom::single;
-    use crate::{PlannerSettings, planner::AllModes};
 
     #[test]
     fn straight_on_is_unlimited_and_straight_back_is_a_stop() {
@@ -111,13 +111,13 @@ mod tests {
     fn a_right_angle_between_short_segments_is_limited_by_their_length() {
         let settings = PlannerSettings { junction_deviation_mm: 1.0, ..PlannerSettings::default() };
         // tan 45 deg = 1: the arc touches half way along 0.02 mm, radius 0.01 mm, at 1000 mm/s²
-        let speed2 = corner_speed2([1.0, 0.0], [0.0, 1.0], 0.02, &Limits::of::<AllModes>(&settings));
+        let speed2 = corner_speed2([1.0, 0.0], [0.0, 1.0], 0.02, &Limits::of(&settings));
         assert!((10.0 - 2e-5..=10.0).contains(&speed2), "{speed2}");
     }
 
     #[test]
     fn single_precision_is_never_faster_and_hardly_slower() {
-        let limits = Limits::of::<AllModes>(&PlannerSettings::default());
+        let limits = Limits::of(&PlannerSettings::default());
         for turn_rad in [1e-5, 1e-3, 0.1, 1.0, 1.6, 3.0, 3.1] {
             let after = [libm::cos(turn_rad), libm::sin(turn_rad)];
             let exact = junction_speed(-after[0], 1000.0, 0.01);

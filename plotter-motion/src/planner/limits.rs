@@ -2,7 +2,7 @@
 
 use super::law::{Law, MOST_FORM_SHARE};
 use super::ring::narrow;
-use super::{AccelLimit, Modes, PathMode, PlannerSettings};
+use super::{AccelLimit, PathMode, PlannerSettings};
 use crate::extremes::{greatest, least};
 use crate::geom::single;
 use crate::root::root;
@@ -21,14 +21,9 @@ const LEAST_PART: f32 = 1e-6;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limits {
     pub(super) settings: PlannerSettings,
-    /// Greatest acceleration that every direction allows, mm/s².
-    pub(super) accel: f32,
-    /// Greatest accelerations along the axes of the motors, where each is limited for itself.
-    pub(super) motors: Option<[f32; 2]>,
-    /// Whether those axes are the diagonals.
-    belts: bool,
-    /// Whether the acceleration changes with a limited jerk.
-    pub(super) has_jerk: bool,
+    /// Greatest accelerations along the axes of the motors, mm/s²: both that of the vector, where it is what is
+    /// limited.
+    motors: [f32; 2],
     /// Squares of the speeds with the pen down and up.
     pub(super) speed2: f32,
     pub(super) travel2: f32,
@@ -37,25 +32,21 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    pub(super) fn of<M: Modes>(settings: &PlannerSettings) -> Self {
+    pub(super) fn of(settings: &PlannerSettings) -> Self {
         /// The pen's share of a belt's motion along its diagonal: √½, rounded down so that no limit is
         /// exceeded.
         const OF_BELT: f32 = FRAC_1_SQRT_2.next_down();
         let PlannerSettings { speed_mm_s, travel_speed_mm_s, accel_mm_s2, accel_limit, .. } = *settings;
-        let (motors, belts) = match accel_limit {
-            AccelLimit::Vector => (None, false),
-            AccelLimit::Axes { x_mm_s2, y_mm_s2 } => (Some([narrow(x_mm_s2), narrow(y_mm_s2)]), false),
+        let motors = match accel_limit {
+            AccelLimit::Vector => [narrow(accel_mm_s2); 2],
+            AccelLimit::Axes { x_mm_s2, y_mm_s2 } => [narrow(x_mm_s2), narrow(y_mm_s2)],
             AccelLimit::Belts { sum_mm_s2, difference_mm_s2 } => {
-                (Some([sum_mm_s2, difference_mm_s2].map(|accel| narrow(accel) * OF_BELT)), true)
+                [sum_mm_s2, difference_mm_s2].map(|accel| narrow(accel) * OF_BELT)
             }
         };
-        let accel = motors.map_or(narrow(accel_mm_s2), |[one, other]| least(one, other));
         Self {
             settings: *settings,
-            accel,
             motors,
-            belts,
-            has_jerk: settings.jerk_of::<M>().is_some(),
             speed2: narrow(speed_mm_s * speed_mm_s),
             travel2: narrow(travel_speed_mm_s * travel_speed_mm_s),
             junction_deviation_mm: narrow(settings.junction_deviation_mm),
@@ -63,32 +54,53 @@ impl Limits {
         }
     }
 
+    /// Greatest acceleration that every direction allows, mm/s².
+    pub(super) const fn accel(&self) -> f32 {
+        // Not by a call: each block asks for it.
+        let [one, other] = self.motors;
+        if one < other { one } else { other }
+    }
+
+    /// Greatest accelerations along the axes of the motors, where each is limited for itself.
+    pub(super) const fn each_motor(&self) -> Option<[f32; 2]> {
+        if matches!(self.settings.accel_limit, AccelLimit::Vector) { None } else { Some(self.motors) }
+    }
+
+    /// Whether the acceleration changes with a limited jerk.
+    pub(super) const fn has_jerk(&self) -> bool {
+        self.settings.jerk_mm_s3.is_some()
+    }
+
     /// A direction, in the axes of the motors.
     pub(super) fn of_motors(&self, [x, y]: [f32; 2]) -> [f32; 2] {
-        if self.belts { [(x + y) * FRAC_1_SQRT_2, (x - y) * FRAC_1_SQRT_2] } else { [x, y] }
+        if matches!(self.settings.accel_limit, AccelLimit::Belts { .. }) {
+            [(x + y) * FRAC_1_SQRT_2, (x - y) * FRAC_1_SQRT_2]
+        } else {
+            [x, y]
+        }
     }
 
     /// Greatest acceleration in a direction (of length 1), mm/s².
     pub(super) fn along(&self, direction: [f32; 2]) -> f32 {
-        let Some([most_one, most_other]) = self.motors else { return self.accel };
+        let [most_one, most_other] = self.motors;
+        if matches!(self.settings.accel_limit, AccelLimit::Vector) {
+            return most_one;
+        }
         let [one, other] = self.of_motors(direction);
-        greatest(self.accel, (1.0 - ROUNDING) / greatest(one.abs() / most_one, other.abs() / most_other))
+        greatest(self.accel(), (1.0 - ROUNDING) / greatest(one.abs() / most_one, other.abs() / most_other))
     }
 
-    /// How hard the machine may speed up and brake along an arc. [`Block`](super::block::Block) documents the
-    /// arguments.
+    /// How hard the machine may speed up and brake along an arc. It turns in every direction, so the vector
+    /// is held to what every direction allows, also where each motor is limited for itself.
+    /// [`Block`](super::block::Block) documents the argument.
     pub(super) fn arc(&self, per_form2: f32) -> Law {
-        let accel = self.accel;
-        if self.motors.is_some() {
-            return Law::Motors { along: [accel; 2], per_form2: [per_form2; 2] };
-        }
-        Law::Curve { accel, per_form2, lean: 0.0 }
+        Law::Curve { accel: self.accel(), per_form2, lean: 0.0 }
     }
 
     /// The same along a parabola of this length.
     pub(super) fn parabola(&self, per_form2: f32, lean: f32, inwards: f32, length_mm: f32) -> Law {
-        let Some(motors) = self.motors else {
-            return Law::Curve { accel: self.accel, per_form2, lean };
+        let Some(motors) = self.each_motor() else {
+            return Law::Curve { accel: self.accel(), per_form2, lean };
         };
         // Its directions are cos h along the middle, less or more sin h inwards; it bends by sin h / L
         // inwards.
@@ -107,18 +119,18 @@ impl Limits {
 
     /// Greatest acceleration along the path where the jerk is limited, mm/s².
     pub(super) fn along_with_jerk(&self) -> f32 {
-        self.along_share() * self.accel
+        self.along_share() * self.accel()
     }
 
     /// Greatest acceleration that turns the path towards the inside of a curve, mm/s². See [`Law`] for what
     /// leans.
     pub(super) fn turning(&self, inwards: [f32; 2], lean: f32) -> f32 {
-        self.along(inwards) * if self.has_jerk { self.across_share(lean) / MOST_FORM_SHARE } else { 1.0 }
+        self.along(inwards) * if self.has_jerk() { self.across_share(lean) / MOST_FORM_SHARE } else { 1.0 }
     }
 
     /// The same on an arc, which turns in every direction.
     pub(super) fn turning_round(&self) -> f32 {
-        self.accel * if self.has_jerk { self.across_share(0.0) / MOST_FORM_SHARE } else { 1.0 }
+        self.accel() * if self.has_jerk() { self.across_share(0.0) / MOST_FORM_SHARE } else { 1.0 }
     }
 
     /// Share of the acceleration that motion with a limited jerk uses along the path. The rest, for turning,
@@ -135,7 +147,7 @@ impl Limits {
     /// limit.
     fn across_share(&self, lean: f32) -> f32 {
         let along = self.along_share();
-        if self.motors.is_some() {
+        if self.each_motor().is_some() {
             1.0 - along
         } else {
             root(1.0 - along * along * (1.0 - lean * lean)) - along * lean

@@ -44,6 +44,9 @@ pub(super) struct Merger {
     count: u8,
     deviation_mm: f32,
     pace: Pace,
+    /// Whether the run has had chords of arcs, which have used up their share of the tolerance. It is here,
+    /// where there is room for it.
+    pub(super) has_arcs: bool,
 }
 
 impl Merger {
@@ -68,7 +71,7 @@ impl Merger {
         }
         let end = if self.pace == pace { self.end_between(start, at, to, tolerance_mm) } else { None };
         let ended = self.end(end.unwrap_or(at));
-        *self = Self { pace, ..Self::default() };
+        *self = Self { pace, has_arcs: self.has_arcs, ..Self::default() };
         self.add(end.unwrap_or(at), to);
         ended
     }

@@ -19,6 +19,9 @@ pub trait Modes: sealed::Sealed {
     /// Memory that only those need.
     #[doc(hidden)]
     type Kept<T: Part>: Keep<T>;
+    /// Memory for one thing, or for another that only those need.
+    #[doc(hidden)]
+    type Either<A: Part, B: Part>: Choice<A, B>;
 }
 
 /// All ways of planning: [`PlannerSettings`] choose one for each job.
@@ -39,18 +42,21 @@ impl Modes for AllModes {
     const ALL: bool = true;
     const LASER: bool = true;
     type Kept<T: Part> = Here<T>;
+    type Either<A: Part, B: Part> = Either<A, B>;
 }
 
 impl Modes for ExactOnly {
     const ALL: bool = false;
     const LASER: bool = true;
     type Kept<T: Part> = Nowhere<T>;
+    type Either<A: Part, B: Part> = First<A, B>;
 }
 
 impl Modes for ExactPen {
     const ALL: bool = false;
     const LASER: bool = false;
     type Kept<T: Part> = Nowhere<T>;
+    type Either<A: Part, B: Part> = First<A, B>;
 }
 
 mod sealed {
@@ -79,6 +85,71 @@ pub struct Here<T>(T);
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Nowhere<T>(PhantomData<T>);
+
+/// What is kept of two.
+#[doc(hidden)]
+pub trait Choice<A, B>: Clone + Debug + PartialEq {
+    fn of(is_second: bool) -> Self;
+    fn first(&self) -> Option<&A>;
+    fn first_mut(&mut self) -> Option<&mut A>;
+    fn second(&self) -> Option<&B>;
+    fn second_mut(&mut self) -> Option<&mut B>;
+}
+
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Either<A, B> {
+    First(A),
+    Second(B),
+}
+
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct First<A, B>(A, PhantomData<B>);
+
+impl<A: Part, B: Part> Choice<A, B> for Either<A, B> {
+    fn of(is_second: bool) -> Self {
+        if is_second { Self::Second(B::default()) } else { Self::First(A::default()) }
+    }
+
+    fn first(&self) -> Option<&A> {
+        if let Self::First(first) = self { Some(first) } else { None }
+    }
+
+    fn first_mut(&mut self) -> Option<&mut A> {
+        if let Self::First(first) = self { Some(first) } else { None }
+    }
+
+    fn second(&self) -> Option<&B> {
+        if let Self::Second(second) = self { Some(second) } else { None }
+    }
+
+    fn second_mut(&mut self) -> Option<&mut B> {
+        if let Self::Second(second) = self { Some(second) } else { None }
+    }
+}
+
+impl<A: Part, B: Part> Choice<A, B> for First<A, B> {
+    fn of(_: bool) -> Self {
+        Self(A::default(), PhantomData)
+    }
+
+    fn first(&self) -> Option<&A> {
+        Some(&self.0)
+    }
+
+    fn first_mut(&mut self) -> Option<&mut A> {
+        Some(&mut self.0)
+    }
+
+    fn second(&self) -> Option<&B> {
+        None
+    }
+
+    fn second_mut(&mut self) -> Option<&mut B> {
+        None
+    }
+}
 
 impl<T: Part> Keep<T> for Here<T> {
     fn get(&self) -> Option<&T> {

@@ -42,9 +42,8 @@ struct Ramp {
 pub(super) struct Ramps {
     law: Law,
     length_mm: f32,
-    /// Number and length of its parts.
+    /// Number of its parts, of equal length.
     parts: u16,
-    part_mm: f32,
     cruise2: f32,
     /// The greatest speed on the block.
     cruise: f32,
@@ -61,6 +60,12 @@ pub(super) struct Ramps {
     next: u8,
     /// Whether the machine stops as soon as it can.
     stops: bool,
+}
+
+impl Default for Ramps {
+    fn default() -> Self {
+        Self::OVER
+    }
 }
 
 /// An acceleration, and one over it.
@@ -87,7 +92,6 @@ impl Ramps {
         law: Law::Line(0.0),
         length_mm: 0.0,
         parts: 1,
-        part_mm: 0.0,
         cruise2: 0.0,
         cruise: 0.0,
         exit2: 0.0,
@@ -121,7 +125,6 @@ impl Ramps {
         let cruise2 = block.cruise2;
         let is_even = block.kind == Kind::Parabola && block.entry2 == cruise2 && exit2 == cruise2;
         self.parts = if is_even { 1 } else { block.pieces() };
-        self.part_mm = self.length_mm / f32::from(self.parts);
         (self.exit2, self.stops) = (exit2, false);
         self.plan_part::<M>(block.entry2);
     }
@@ -132,11 +135,21 @@ impl Ramps {
         self.plan_part::<M>(self.speed2());
     }
 
+    /// Length of one of its parts, mm.
+    fn part_mm(&self) -> f32 {
+        self.length_mm / f32::from(self.parts)
+    }
+
+    /// Length of so many of its parts, mm.
+    fn parts_mm(&self, parts: u16) -> f32 {
+        if parts > 0 { f32::from(parts) * self.part_mm() } else { 0.0 }
+    }
+
     /// Number of parts after the current one.
     fn parts_left(&self) -> u16 {
         /// Greatest rounding of that number.
         const ROUNDING: f32 = 1e-3;
-        if self.parts > 1 { whole(self.rest_mm / self.part_mm - ROUNDING) } else { 0 }
+        if self.parts > 1 { whole(self.rest_mm / self.part_mm() - ROUNDING) } else { 0 }
     }
 
     /// How hard the machine may speed up and brake on the part that has `parts_left` parts after it.
@@ -153,7 +166,7 @@ impl Ramps {
             if speed2 >= self.cruise2 {
                 break;
             }
-            speed2 = self.laws(part).1.reach2(speed2, self.part_mm);
+            speed2 = self.laws(part).1.reach2(speed2, self.part_mm());
         }
         speed2
     }
@@ -161,14 +174,14 @@ impl Ramps {
     /// Square of the greatest speed at which the block can be left.
     pub(super) fn most_exit2(&self) -> f32 {
         let left = self.parts_left();
-        let mut way_mm = self.rest_mm - f32::from(left) * self.part_mm;
+        let mut way_mm = self.rest_mm - self.parts_mm(left);
         let mut speed2 = self.speed2();
         for part in (0..=left).rev() {
             if speed2 >= self.cruise2 {
                 break;
             }
             speed2 = self.laws(part).0.reach2(speed2, way_mm);
-            way_mm = self.part_mm;
+            way_mm = self.part_mm();
         }
         speed2
     }
@@ -176,7 +189,7 @@ impl Ramps {
     /// Plans the part that begins here, entered at `entry2`.
     fn plan_part<M: Modes>(&mut self, entry2: f32) {
         let (left, cruise2) = (self.parts_left(), self.cruise2);
-        let end_mm = f32::from(left) * self.part_mm;
+        let end_mm = self.parts_mm(left);
         let way_mm = self.rest_mm - end_mm;
         let laws = self.laws(left);
         let exit2 = if left > 0 {
@@ -349,7 +362,7 @@ impl Ramps {
     /// Brakes in the part that begins here.
     fn brake_part(&mut self) {
         let (left, speed2) = (self.parts_left(), self.speed2());
-        let end_mm = f32::from(left) * self.part_mm;
+        let end_mm = self.parts_mm(left);
         let steepness = Steepness::new(self.laws(left).1.accel_at(speed2));
         let (part_mm, stop_mm) = (self.rest_mm - end_mm, steepness.way_mm(speed2));
         let left2 = speed2 - 2.0 * steepness.accel * part_mm;
@@ -371,11 +384,11 @@ impl Ramps {
     /// Rounding never makes it more than was planned.
     pub(super) fn forced2(&self) -> f32 {
         let left = self.parts_left();
-        let mut way_mm = self.rest_mm - f32::from(left) * self.part_mm;
+        let mut way_mm = self.rest_mm - self.parts_mm(left);
         let mut speed2 = self.speed2();
         for part in (0..=left).rev() {
             speed2 -= 2.0 * self.laws(part).1.accel_at(speed2) * way_mm;
-            way_mm = self.part_mm;
+            way_mm = self.part_mm();
             if speed2 <= 0.0 {
                 break;
             }
@@ -497,7 +510,7 @@ mod tests {
     use crate::{Pen, Point};
 
     fn ramps(length_mm: f32, speed_mm_s: f32) -> Ramps {
-        let limits = Limits::of::<AllModes>(&PlannerSettings::default());
+        let limits = Limits::of(&PlannerSettings::default());
         let to = Point::new(length_mm.into(), 0.0);
         let cruise2 = speed_mm_s * speed_mm_s;
         let mut block = Block::path(
@@ -506,7 +519,7 @@ mod tests {
             length_mm,
             (Pen::Down, 0),
             cruise2,
-            Bend::Line { accel: limits.accel },
+            Bend::Line { accel: limits.accel() },
         );
         block.cruise2 = cruise2;
         let mut ramps = Ramps::OVER;

@@ -14,10 +14,10 @@ use crate::geom::single;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Ring<const N: usize> {
     blocks: [Block; N],
-    head: usize,
-    len: usize,
+    head: u16,
+    len: u16,
     /// Number of blocks from the head whose entry speed no later block can raise.
-    planned: usize,
+    planned: u16,
 }
 
 impl<const N: usize> Ring<N> {
@@ -26,25 +26,25 @@ impl<const N: usize> Ring<N> {
     }
 
     pub(super) const fn len(&self) -> usize {
-        self.len
+        self.len as usize
     }
 
     pub(super) const fn room(&self) -> usize {
-        N - self.len
+        N - self.len()
     }
 
-    fn slot(&self, index: usize) -> usize {
-        let slot = self.head + index;
+    const fn slot(&self, index: usize) -> usize {
+        let slot = self.head as usize + index;
         if slot >= N { slot - N } else { slot }
     }
 
     pub(super) fn get(&self, index: usize) -> Option<&Block> {
-        if index < self.len { self.blocks.get(self.slot(index)) } else { None }
+        if index < self.len() { self.blocks.get(self.slot(index)) } else { None }
     }
 
     fn get_mut(&mut self, index: usize) -> Option<&mut Block> {
         let slot = self.slot(index);
-        if index < self.len { self.blocks.get_mut(slot) } else { None }
+        if index < self.len() { self.blocks.get_mut(slot) } else { None }
     }
 
     /// Square of the speed at which the block after the head is entered: 0 after the last.
@@ -54,9 +54,11 @@ impl<const N: usize> Ring<N> {
 
     /// Takes a block; there must be room.
     pub(super) fn push(&mut self, block: Block) {
-        debug_assert!(self.len < N, "the planner has asked for room");
-        self.len = (self.len + 1).min(N);
-        if let Some(last) = self.get_mut(self.len.saturating_sub(1)) {
+        debug_assert!(self.room() > 0, "the planner has asked for room");
+        if self.room() > 0 {
+            self.len += 1;
+        }
+        if let Some(last) = self.get_mut(self.len().saturating_sub(1)) {
             *last = block;
         }
     }
@@ -64,7 +66,7 @@ impl<const N: usize> Ring<N> {
     /// Removes the head. The entry speed of the next block is final from here on.
     pub(super) fn pop(&mut self) {
         if self.len > 0 {
-            self.head = self.slot(1);
+            self.head = number(self.slot(1));
             self.len -= 1;
             self.planned = self.planned.saturating_sub(1);
         }
@@ -82,9 +84,9 @@ impl<const N: usize> Ring<N> {
 
     /// Plans again after a change at the end. The head's entry speed stays.
     pub(super) fn plan(&mut self, limits: &Limits) {
-        let first = self.planned.max(1);
+        let first = usize::from(self.planned.max(1));
         let mut exit2 = Sum::default();
-        let mut index = self.len;
+        let mut index = self.len();
         // The last block, going backwards, that is limited by its corner.
         let mut last_limited = None;
         while index > first {
@@ -97,7 +99,7 @@ impl<const N: usize> Ring<N> {
             }
         }
         let mut most2 = self.get(first - 1).map_or(0.0, |block| after2(block, limits));
-        for index in first..self.len {
+        for index in first..self.len() {
             let Some(block) = self.get_mut(index) else { break };
             let slower = most2 < block.entry2;
             if slower {
@@ -106,7 +108,7 @@ impl<const N: usize> Ring<N> {
             let settled = slower || block.entry2 >= block.max_entry2;
             most2 = after2(block, limits);
             if settled {
-                self.planned = index;
+                self.planned = number(index);
             } else if last_limited.is_none_or(|last| index > last) {
                 // From here on the machine brakes for the end: each block is entered no faster than the
                 // previous one.
@@ -120,7 +122,7 @@ impl<const N: usize> Ring<N> {
     /// brakes from now on. Gives the square of the greatest speed on the last block.
     pub(super) fn rescale(&mut self, shares: &Shares, limits: &Limits, before2: f32, forced2: f32) -> f32 {
         let (mut before2, mut forced2) = (before2, forced2);
-        for index in 0..self.len {
+        for index in 0..self.len() {
             let Some(block) = self.get_mut(index) else { continue };
             if block.is_path() {
                 block.cruise2 = block.wish().cruise2(shares, limits);
@@ -152,7 +154,7 @@ impl<const N: usize> Ring<N> {
     pub(super) fn enter_at_most(&mut self, most2: f32, limits: &Limits) -> f32 {
         // What can be braked from within the blocks known, backwards.
         let mut entry2 = Sum::default();
-        for index in (0..self.len).rev() {
+        for index in (0..self.len()).rev() {
             let Some(block) = self.get(index) else { continue };
             entry2 = before(entry2, block, limits);
         }
@@ -185,6 +187,12 @@ fn after2(block: &Block, limits: &Limits) -> f32 {
     }
 }
 
+/// A number of blocks, of which a planner has fewer than 65,536.
+#[expect(clippy::cast_possible_truncation, reason = "the planner asserts it")]
+const fn number(blocks: usize) -> u16 {
+    blocks as u16
+}
+
 /// A limit as the look-ahead keeps it: rounded down, so that no limit is exceeded by the rounding.
 pub(super) fn narrow(value: f64) -> f32 {
     let rounded = single(value);
@@ -194,7 +202,7 @@ pub(super) fn narrow(value: f64) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::super::block::Bend;
-    use super::super::{AllModes, PlannerSettings, Shape};
+    use super::super::{PlannerSettings, Shape};
     use super::*;
     use crate::{Pen, Point};
     use proptest::prelude::*;
@@ -202,11 +210,11 @@ mod tests {
     use std::vec::Vec;
 
     fn limits() -> Limits {
-        Limits::of::<AllModes>(&PlannerSettings::default())
+        Limits::of(&PlannerSettings::default())
     }
 
     fn block(length_mm: f32, max_entry2: f32) -> Block {
-        let line = Bend::Line { accel: limits().accel };
+        let line = Bend::Line { accel: limits().accel() };
         let mut block = Block::path(Shape::Line, Point::ORIGIN, length_mm, (Pen::Down, 0), 1e4, line);
         block.max_entry2 = max_entry2;
         block

@@ -47,9 +47,8 @@ pub(super) struct Vertex {
     pub(super) moved: Point,
     /// How far the path may be from it, mm.
     within_mm: f64,
-    /// What holds before it, and the square of the greatest speed on the curve there.
+    /// What holds before it.
     pub(super) before: Pace,
-    cruise2: f32,
 }
 
 impl Vertex {
@@ -65,9 +64,8 @@ impl Vertex {
     ) -> Self {
         let asked = held.to;
         let within_mm = within_mm - f64::from(held.deviation_mm.max(next.deviation_mm));
-        let cruise2 = least(held.pace.cruise2, next.pace.cruise2);
-        let vertex = Self { asked, moved: asked, within_mm, before: held.pace, cruise2 };
-        let mut off = vertex.off(from, &next.to, limits);
+        let vertex = Self { asked, moved: asked, within_mm, before: held.pace };
+        let mut off = vertex.off(from, next, limits);
         for _ in 0..TRIALS {
             let moved = Self { moved: asked + off, ..vertex };
             if off == Vec2::default() || may_be(&moved) {
@@ -81,15 +79,16 @@ impl Vertex {
     /// Where the lines that are drawn in place of the corner, which comes from one place and goes to another,
     /// should meet: outside of it, so that the curve begins on the outer side of the path and passes the
     /// corner on the inner one, where the speed gains by that.
-    fn off(&self, from: &Point, to: &Point, limits: &Limits) -> Vec2 {
+    fn off(&self, from: &Point, next: &Merged, limits: &Limits) -> Vec2 {
         let Self { asked, within_mm, .. } = *self;
-        let (way_in, way_out) = (asked - *from, *to - asked);
+        let (way_in, way_out) = (asked - *from, next.to - asked);
         let (in_mm, out_mm) = (way_in.length_near(), way_out.length_near());
         if !(in_mm > 0.0 && out_mm > 0.0) {
             return Vec2::default();
         }
         let (lean, inwards) = half_turn(way_in * (1.0 / in_mm), way_out * (1.0 / out_mm));
-        let room = self.room((lean, inwards), f64::INFINITY, 0.5 * in_mm.min(out_mm), limits);
+        let most = (f64::INFINITY, 0.5 * in_mm.min(out_mm));
+        let room = self.room((lean, inwards), most, next.pace, limits);
         let wanted_mm = Blend::new(lean, room).deviation_mm(lean) - within_mm;
         // The lines may be off by as much across their way.
         let most_mm = taken_share(lean) * within_mm / level_of(lean).max(LEAST_LEVEL);
@@ -109,8 +108,15 @@ impl Vertex {
     }
 
     /// Whether the curve there, from lines that come from one place and go to another, comes back to the
-    /// corner asked for. `tangent_mm` is the room on the first line; on the second it is the half.
-    pub(super) fn is_passed(&self, from: &Point, to: &Point, tangent_mm: f64, limits: &Limits) -> bool {
+    /// corner asked for. `tangent_mm` is the room on the first line; on the second, of the pace `after`, it is
+    /// the half.
+    pub(super) fn is_passed(
+        &self,
+        (from, to): (&Point, &Point),
+        tangent_mm: f64,
+        after: Pace,
+        limits: &Limits,
+    ) -> bool {
         let (way_in, way_out) = (self.moved - *from, *to - self.moved);
         let (in_mm, out_mm) = (way_in.length_near(), way_out.length_near());
         if !(in_mm > 0.0 && out_mm > 0.0) {
@@ -118,42 +124,49 @@ impl Vertex {
         }
         let (lean, inwards) = half_turn(way_in * (1.0 / in_mm), way_out * (1.0 / out_mm));
         let off = self.moved - self.asked;
-        let room = self.room((lean, inwards), f64::INFINITY, tangent_mm.min(0.5 * out_mm), limits);
+        let most = (f64::INFINITY, tangent_mm.min(0.5 * out_mm));
+        let room = self.room((lean, inwards), most, after, limits);
         let apex = off + inwards * Blend::new(lean, room).deviation_mm(lean);
         // Farther behind the corner it is only if there is room to spare.
         apex.dot(inwards) >= 0.0 || apex.length() <= self.within_mm
     }
 
+    /// Square of the greatest speed on the curve there, if this holds after it.
+    fn cruise2(&self, after: Pace) -> f32 {
+        least(self.before.cruise2, after.cruise2)
+    }
+
     fn room(
         &self,
         (lean, inwards): (f64, Vec2),
-        deviation_mm: f64,
-        tangent_mm: f64,
+        (deviation_mm, tangent_mm): (f64, f64),
+        after: Pace,
         limits: &Limits,
     ) -> Room {
         // An arc is accelerated towards every side in turn.
-        let accel = if limits.has_jerk {
+        let accel = if limits.has_jerk() {
             limits.turning_round()
         } else {
             limits.turning(direction(inwards), single(lean))
         };
-        Room { deviation_mm, tangent_mm, cruise2: self.cruise2.into(), accel_mm_s2: accel.into() }
+        Room { deviation_mm, tangent_mm, cruise2: self.cruise2(after).into(), accel_mm_s2: accel.into() }
     }
 
-    /// The curve between two directions, and how far from the corner it touches the lines; none where there
-    /// is no room for one.
+    /// The curve between two directions, of which the second has this pace, and how far from the corner it
+    /// touches the lines; none where there is no room for one.
     pub(super) fn blend(
         &self,
         (along, after): (Vec2, Vec2),
         tangent_mm: f64,
+        pace: Pace,
         limits: &Limits,
     ) -> Option<(f64, Stretch)> {
-        let Self { asked, moved, within_mm, cruise2, .. } = *self;
+        let Self { asked, moved, within_mm, .. } = *self;
         let (lean, inwards) = half_turn(along, after);
         let deviation_mm = reach_mm(moved - asked, inwards, within_mm * taken_share(lean));
-        let room = self.room((lean, inwards), deviation_mm, tangent_mm, limits);
+        let room = self.room((lean, inwards), (deviation_mm, tangent_mm), pace, limits);
         let (tangent_mm, length_mm, shape, bend);
-        if limits.has_jerk {
+        if limits.has_jerk() {
             let arc = BlendArc::new(lean, room);
             (tangent_mm, length_mm) = (arc.tangent_mm, arc.length_mm());
             let side = if along.cross(after) > 0.0 { 1.0 } else { -1.0 };
@@ -174,7 +187,7 @@ impl Vertex {
             length_mm: single(length_mm),
             entry: direction(along),
             exit: direction(after),
-            feed2: cruise2,
+            feed2: self.cruise2(pace),
             bend,
         };
         (tangent_mm > SHORTEST_MM && length_mm > SHORTEST_MM).then_some((tangent_mm, curve))
@@ -189,16 +202,14 @@ pub(super) struct Rounding {
     pub(super) corner: Option<Vertex>,
     /// The segment after it, whose end may still be a corner.
     pub(super) held: Option<Merged>,
-    /// An arc whose chords have not all come, and the square of its greatest speed.
-    pub(super) arc: Option<(DividedArc, f32)>,
-    /// Whether the run has had chords of arcs, which have used up their share of the tolerance.
-    pub(super) has_arcs: bool,
+    /// An arc whose chords have not all come.
+    pub(super) arc: Option<DividedArc>,
 }
 
 impl Rounding {
     /// What is left of the tolerance for lines, mm.
     pub(super) fn within_mm(&self, path_tolerance_mm: f64) -> f64 {
-        if self.has_arcs { (1.0 - CHORD_SHARE) * path_tolerance_mm } else { path_tolerance_mm }
+        if self.merger.has_arcs { (1.0 - CHORD_SHARE) * path_tolerance_mm } else { path_tolerance_mm }
     }
 }
 

@@ -1,4 +1,4 @@
-//! [`SCurveState`]: jerk-limited motion through the blocks ahead.
+//! [`SCurveState`]: motion through the blocks ahead with a limited jerk along the path.
 //!
 //! The speeds that corners and curves allow are points that the motion must not pass too fast. A state of
 //! motion (speed and acceleration) is *viable* if the hardest braking within acceleration and jerk would

@@ -3,66 +3,64 @@
 use super::Phase;
 use super::block::Block;
 use super::limits::Limits;
-use super::modes::{Keep as _, Modes};
+use super::modes::{Choice as _, Modes};
 use super::ramps::Ramps;
 use super::ring::Ring;
 use super::s_curve::SCurveState;
 
-/// What is left of the course given last, with constant accelerations, or with S-curves where the settings
-/// have a jerk. An S-curve leaves its block in the ring until it is over, ramps take it out.
+/// What is left of the course given last: constant accelerations, or S-curves where the settings have a jerk.
+/// An S-curve leaves its block in the ring until it is over, ramps take it out.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct TimeLaw<M: Modes> {
-    ramps: Ramps,
-    s_curve: M::Kept<SCurveState>,
-}
+pub(super) struct TimeLaw<M: Modes>(M::Either<Ramps, SCurveState>);
 
 impl<M: Modes> TimeLaw<M> {
     /// At rest, with nothing left.
-    pub(super) fn over() -> Self {
-        Self { ramps: Ramps::OVER, s_curve: M::Kept::default() }
+    pub(super) fn over(limits: &Limits) -> Self {
+        Self(M::Either::of(limits.settings.jerk_of::<M>().is_some()))
     }
 
-    const fn is_s_curve(limits: &Limits) -> bool {
-        limits.settings.jerk_of::<M>().is_some()
+    /// The ramps, if they leave something of the course.
+    fn ramps_left(&mut self) -> Option<&mut Ramps> {
+        self.0.first_mut().filter(|ramps| ramps.rest_mm() > 0.0)
     }
 
     /// Whether all of it has been taken, of ramps; what S-curves leave is in the ring.
     pub(super) fn is_over(&self) -> bool {
-        self.ramps.is_over() && self.ramps.rest_mm() <= 0.0
+        self.0.first().is_none_or(|ramps| ramps.is_over() && ramps.rest_mm() <= 0.0)
     }
 
     /// Whether the machine is at rest after what has been taken.
-    pub(super) fn stands<const N: usize>(&self, ring: &Ring<N>, limits: &Limits) -> bool {
-        if Self::is_s_curve(limits) {
-            self.s_curve.get().is_none_or(SCurveState::stands)
-        } else if self.ramps.rest_mm() > 0.0 {
-            self.ramps.speed2() <= 0.0
-        } else {
-            ring.get(0).is_none_or(|next| next.entry2 <= 0.0)
+    pub(super) fn stands<const N: usize>(&self, ring: &Ring<N>) -> bool {
+        if let Some(s_curve) = self.0.second() {
+            return s_curve.stands();
+        }
+        match self.0.first() {
+            Some(ramps) if ramps.rest_mm() > 0.0 => ramps.speed2() <= 0.0,
+            _ => ring.get(0).is_none_or(|next| next.entry2 <= 0.0),
         }
     }
 
     /// Brakes on what is left of the course, and with what speed is left on the next; an S-curve does where
     /// its next phase is asked for.
     pub(super) fn brake<const N: usize>(&mut self, ring: &mut Ring<N>, limits: &Limits) {
-        if !Self::is_s_curve(limits) && self.ramps.rest_mm() > 0.0 {
-            let exit2 = ring.enter_at_most(self.ramps.forced2(), limits);
-            self.ramps.brake(exit2);
+        if let Some(ramps) = self.ramps_left() {
+            let exit2 = ring.enter_at_most(ramps.forced2(), limits);
+            ramps.brake(exit2);
         }
     }
 
     /// Goes on after a feed hold.
     pub(super) fn go_on<const N: usize>(&mut self, ring: &mut Ring<N>, limits: &Limits) {
-        if !Self::is_s_curve(limits) && self.ramps.rest_mm() > 0.0 {
-            let exit2 = ring.enter_at_most(self.ramps.most_exit2(), limits);
-            self.ramps.plan::<M>(exit2);
+        if let Some(ramps) = self.ramps_left() {
+            let exit2 = ring.enter_at_most(ramps.most_exit2(), limits);
+            ramps.plan::<M>(exit2);
         }
     }
 
     /// Other greatest speeds hold: an S-curve that has been chosen and not been taken is chosen anew, and it
     /// is said that this is one.
-    pub(super) fn choose_anew(&mut self, limits: &Limits) -> bool {
-        if let Some(s_curve) = self.s_curve.get_mut().filter(|_| Self::is_s_curve(limits)) {
+    pub(super) fn choose_anew(&mut self) -> bool {
+        if let Some(s_curve) = self.0.second_mut() {
             s_curve.choose_anew();
             return true;
         }
@@ -71,9 +69,9 @@ impl<M: Modes> TimeLaw<M> {
 
     /// Of ramps, the squares of the least speed at the end of the course under way, and of the one with which
     /// the next block is entered as planned.
-    pub(super) fn forced2<const N: usize>(&self, ring: &Ring<N>) -> (f32, f32) {
+    pub(super) fn forced2<const N: usize>(&mut self, ring: &Ring<N>) -> (f32, f32) {
         let next2 = ring.get(0).map_or(0.0, |head| head.entry2);
-        let forced2 = if self.ramps.rest_mm() > 0.0 { self.ramps.forced2() } else { next2 };
+        let forced2 = self.ramps_left().map_or(next2, |ramps| ramps.forced2());
         (forced2, next2)
     }
 
@@ -86,17 +84,16 @@ impl<M: Modes> TimeLaw<M> {
         ring: &mut Ring<N>,
         limits: &Limits,
     ) {
-        if self.ramps.rest_mm() <= 0.0 {
-            ring.enter_with(next2, limits);
-            return;
-        }
-        self.ramps.cruise_at(cruise2);
+        let Some(ramps) = self.ramps_left() else {
+            return ring.enter_with(next2, limits);
+        };
+        ramps.cruise_at(cruise2);
         if hold { self.brake(ring, limits) } else { self.go_on(ring, limits) }
     }
 
     /// Begins the head of the ring, where it is a path, as an S-curve; whether it did.
-    pub(super) fn begin_s_curve(&mut self, head: &Block, limits: &Limits) -> bool {
-        if let Some(s_curve) = self.s_curve.get_mut().filter(|_| Self::is_s_curve(limits) && head.is_path()) {
+    pub(super) fn begin_s_curve(&mut self, head: &Block) -> bool {
+        if let Some(s_curve) = self.0.second_mut().filter(|_| head.is_path()) {
             s_curve.begin();
             return true;
         }
@@ -106,20 +103,22 @@ impl<M: Modes> TimeLaw<M> {
     /// Begins the head of the ring with ramps, and takes it out.
     pub(super) fn begin_ramps<const N: usize>(&mut self, ring: &mut Ring<N>, limits: &Limits) {
         if let Some(head) = ring.get(0) {
-            self.ramps.begin::<M>(head, ring.next_entry2(), limits);
+            if let Some(ramps) = self.0.first_mut() {
+                ramps.begin::<M>(head, ring.next_entry2(), limits);
+            }
             ring.pop();
         }
     }
 
     /// The next phase of a ramp.
     pub(super) fn next_ramp(&mut self) -> Option<Phase> {
-        self.ramps.next::<M>()
+        self.0.first_mut()?.next::<M>()
     }
 
     /// As [`Self::next_ramp`], for who does not want to hold the machine: a phase, and how many like it make
     /// the ramp.
     pub(super) fn next_whole_ramp(&mut self) -> Option<(Phase, u32)> {
-        self.ramps.next_whole::<M>()
+        self.0.first_mut()?.next_whole::<M>()
     }
 
     /// The next phase of an S-curve over the head of the ring.
@@ -130,6 +129,6 @@ impl<M: Modes> TimeLaw<M> {
         hold: bool,
     ) -> Option<Phase> {
         let jerk_mm_s3 = limits.settings.jerk_of::<M>()?;
-        self.s_curve.get_mut()?.next_phase(ring, limits.along_with_jerk().into(), jerk_mm_s3, hold)
+        self.0.second_mut()?.next_phase(ring, limits.along_with_jerk().into(), jerk_mm_s3, hold)
     }
 }

@@ -3,7 +3,7 @@
 //! The driver's pulses turn a magnetic field; the rotor is drawn after it as by a spring that slips:
 //!
 //! ```text
-//!   J dw/dt = -T(f) sin(p (angle - field)) - b w - friction        dangle/dt = w
+//!   J dw/dt = -T(f) sin(p (angle - field)) - d (w - field's) - b w - friction        dangle/dt = w
 //!
 //!   torque ▲                          T(f), f pulses a second:
 //!   T ─────┼────────╮                 flat to the corner rate, then straight down
@@ -54,6 +54,9 @@ pub struct StepperSettings {
     pub coulomb_n_m: f64,
     /// Viscous friction, N m s (per radian).
     pub viscous_n_m_s: f64,
+    /// Damping of the rotor's swing about its field, N m s (per radian): what the currents that the swing
+    /// induces take from it. Nothing by default, the worst that a motor can do.
+    pub damping_n_m_s: f64,
 }
 
 impl Default for StepperSettings {
@@ -68,6 +71,7 @@ impl Default for StepperSettings {
             inertia_kg_m2: 4.94e-5,
             coulomb_n_m: 0.04, // 7 N at the belt
             viscous_n_m_s: 1.0e-3,
+            damping_n_m_s: 0.0,
         }
     }
 }
@@ -150,6 +154,10 @@ impl StepperAxis {
         }
         self.last_pulse = Some(self.now);
         self.field = self.field.saturating_add(i64::from(direction.sign()));
+        // What damps the rotor against a standing field takes it along with one that turns: for each step by
+        // the same, however fast the step is.
+        let StepperSettings { inertia_kg_m2, damping_n_m_s, .. } = self.settings;
+        self.speed_rad_s += damping_n_m_s * f64::from(direction.sign()) * self.rad_per_pulse / inertia_kg_m2;
     }
 
     /// Lets time pass until `now`. Pauses beyond some 20 s count as 20 s.
@@ -222,7 +230,7 @@ impl StepperAxis {
     /// Goes on by `dt_s`; says whether anything moves. First the speed, then the angle with it (the
     /// symplectic Euler method, which neither feeds the swing of a spring nor damps it).
     fn turn(&mut self, most_n_m: f64, dt_s: f64) -> bool {
-        let StepperSettings { inertia_kg_m2, coulomb_n_m, viscous_n_m_s, .. } = self.settings;
+        let StepperSettings { inertia_kg_m2, coulomb_n_m, viscous_n_m_s, damping_n_m_s, .. } = self.settings;
         #[expect(clippy::cast_precision_loss, reason = "pulses stay far below 2^53")]
         let behind_rad = self.field as f64 * self.rad_per_pulse - self.angle_rad;
         let pull = most_n_m * libm::sin(self.pole_pairs * behind_rad);
@@ -230,7 +238,8 @@ impl StepperAxis {
             return false;
         }
         let sense = if self.speed_rad_s == 0.0 { pull } else { self.speed_rad_s };
-        let friction = libm::copysign(coulomb_n_m, sense) + viscous_n_m_s * self.speed_rad_s;
+        let friction =
+            libm::copysign(coulomb_n_m, sense) + (viscous_n_m_s + damping_n_m_s) * self.speed_rad_s;
         let speed_rad_s = self.speed_rad_s + dt_s * (pull - friction) / inertia_kg_m2;
         // Friction stops a rotor, it never turns it round; whether it goes on is settled in the next step.
         let turned_round = speed_rad_s * self.speed_rad_s < 0.0 && coulomb_n_m > 0.0;

@@ -4,9 +4,10 @@ use crate::geom::single;
 use crate::root::root;
 use crate::turn::atan;
 use crate::{PlotOp, Point, Vec2};
+use core::num::NonZeroU16;
 
 /// Most chords of one arc.
-const MOST_CHORDS: u32 = 65_536;
+const MOST_CHORDS: u32 = 65_535;
 
 /// An arc that is being divided.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,8 +19,10 @@ pub(crate) struct DividedArc {
     /// How much farther from the centre it ends than it begins, as a share of the radius.
     growth: f64,
     pub(crate) to: Point,
-    chords: u32,
-    next: u32,
+    /// Square of the greatest speed that is asked for along it, mm²/s²; 0 where none is.
+    pub(crate) cruise2: f32,
+    chords: NonZeroU16,
+    next: u16,
 }
 
 impl DividedArc {
@@ -29,30 +32,31 @@ impl DividedArc {
         let radius_mm = out.length();
         let growth = if radius_mm > 0.0 { (to - centre).length() / radius_mm - 1.0 } else { 0.0 };
         let chords = chord_count(single(radius_mm), single(sweep_rad), single(tolerance_mm));
-        Self { centre, out, sweep_rad, growth, to, chords, next: 0 }
+        let chords = u16::try_from(chords).ok().and_then(NonZeroU16::new).unwrap_or(NonZeroU16::MAX);
+        Self { centre, out, sweep_rad, growth, to, cruise2: 0.0, chords, next: 0 }
     }
 
     /// Where the next chord ends.
     pub(crate) fn next_place(&mut self) -> Option<Point> {
-        if self.next >= self.chords {
+        if self.is_over() {
             return None;
         }
         self.next += 1;
-        if self.next == self.chords {
+        if self.is_over() {
             return Some(self.to);
         }
-        let share = f64::from(self.next) / f64::from(self.chords);
+        let share = f64::from(self.next) / f64::from(self.chords.get());
         Some(self.centre + self.out.rotated(self.sweep_rad * share) * (1.0 + self.growth * share))
     }
 
     /// Whether it has no more.
     pub(crate) const fn is_over(&self) -> bool {
-        self.next >= self.chords
+        self.next >= self.chords.get()
     }
 }
 
 /// The same tool path with every arc as chords that are no farther than `tolerance_mm` from it, at most
-/// 65,536 of them.
+/// 65,535 of them.
 ///
 /// The chord over an angle a of a circle of radius r lies r (1 − cos(a/2)) from it at the farthest.
 ///
@@ -93,7 +97,7 @@ pub fn chords<I: IntoIterator<Item = PlotOp>>(
     })
 }
 
-/// Into how many chords an arc is divided so that none is farther than `tolerance_mm` from it: 1 to 65,536; 1
+/// Into how many chords an arc is divided so that none is farther than `tolerance_mm` from it: 1 to 65,535; 1
 /// for what is no arc.
 pub(crate) fn chord_count(radius_mm: f32, sweep_rad: f32, tolerance_mm: f32) -> u32 {
     let share = tolerance_mm / radius_mm;

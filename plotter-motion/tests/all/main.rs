@@ -90,6 +90,7 @@ mod sim_bench;
 mod sim_contour;
 mod sim_enable_pwm;
 mod sim_every_line_ends;
+mod sim_grbl;
 mod sim_klipper;
 mod sim_marking_board;
 mod sim_planner;

@@ -38,8 +38,9 @@ fn last_s(settings: &PlannerSettings, step_mm: f64) -> f64 {
     }
 }
 const TOLERANCE_MM: f64 = 0.05;
-/// Of the simulated motors.
+/// Of the simulated motors, and of the documented machine.
 const MICROSTEPS: f64 = 16.0;
+const STEPS_PER_MM: f64 = 87.58;
 
 fn modes() -> [(&'static str, PlannerSettings); 4] {
     let exact = PlannerSettings::default();
@@ -195,7 +196,7 @@ fn whole_drawings_lose_no_step() {
             auditor::run::<16>(
                 settings,
                 clock,
-                87.58,
+                STEPS_PER_MM,
                 &drawing.ops,
                 |_, _, _| {},
                 |tick, event| {
@@ -228,6 +229,125 @@ fn whole_drawings_lose_no_step() {
     }
 }
 
+/// A motor with this much more torque than the limit asks for: 1.2 was asked.
+const RESERVE: f64 = 1.2;
+/// Dry friction, as a share of the torque that the acceleration takes: so little that the acceleration, not
+/// the friction, is what the motor is nearly too weak for.
+const FRICTION_SHARE: f64 = 0.1;
+/// Damping of the rotor's swing, as a share of the least at which it does not swing. A rotor that nothing
+/// damps goes beyond its place by as much as it was behind with every jump of the acceleration, and rows of
+/// corners make it swing more and more: it needs up to eight times the torque.
+const DAMPING_SHARE: f64 = 0.4;
+/// The steps of these motors, which are so fine that a motor is not helped by being two full steps behind: on
+/// the documented machine that is a third of a millimetre.
+const FINE_STEPS_PER_MM: f64 = 400.0;
+/// A rotor that is so far from its field falls to another place of rest, full steps.
+const FALLS: f64 = 2.0;
+
+/// A motor whose torque is so many times what `accel_mm_s2` asks of it, friction included, damped as one with
+/// [`RESERVE`], and as strong at every rate.
+fn motor_for(accel_mm_s2: f64, times: f64) -> StepperSettings {
+    let plain = StepperSettings { viscous_n_m_s: 0.0, max_rate_hz: 1e9, ..StepperSettings::default() };
+    let full_steps = f64::from(plain.full_steps_per_turn);
+    let rad_per_mm = FINE_STEPS_PER_MM * core::f64::consts::TAU / (full_steps * MICROSTEPS);
+    let inertia_n_m = plain.inertia_kg_m2 * accel_mm_s2 * rad_per_mm;
+    let needed_n_m = (1.0 + FRICTION_SHARE) * inertia_n_m;
+    // As of a spring that turns the rotor's inertia: 2 √(J p T).
+    let stiffness = 0.25 * full_steps * RESERVE * needed_n_m;
+    StepperSettings {
+        holding_n_m: times * needed_n_m,
+        coulomb_n_m: FRICTION_SHARE * inertia_n_m,
+        damping_n_m_s: DAMPING_SHARE * 2.0 * (plain.inertia_kg_m2 * stiffness).sqrt(),
+        ..plain
+    }
+}
+
+/// The steps of a drawing: when, s, of which axis and which way.
+fn steps_of(settings: PlannerSettings, drawing: &Drawing) -> Vec<(Duration, Axis, Direction)> {
+    let clock = StepGenSettings::default();
+    let mut steps = Vec::new();
+    auditor::run::<16>(
+        settings,
+        clock,
+        FINE_STEPS_PER_MM,
+        &drawing.ops,
+        |_, _, _| {},
+        |tick, event| {
+            let MotorEvent::Step(StepPair { x, y }) = event else { return };
+            let at = Duration::from_secs_f64(tick as f64 / f64::from(clock.clock_hz));
+            for (axis, step) in [(Axis::X, x), (Axis::Y, y)] {
+                if step != 0 {
+                    steps.push((at, axis, if step > 0 { Direction::Plus } else { Direction::Minus }));
+                }
+            }
+        },
+    );
+    steps
+}
+
+/// How far a rotor is from its field at any step, full steps; no more is looked for once it falls.
+fn greatest_lag(steps: &[(Duration, Axis, Direction)], motor: StepperSettings) -> f64 {
+    let mut plant = StepperPlant::new(motor, motor);
+    let mut most_lag = 0.0_f64;
+    for &(at, axis, direction) in steps {
+        plant.pulse(at, axis, direction);
+        let motor = if axis == Axis::X { &plant.x } else { &plant.y };
+        let behind = motor.commanded_steps() as f64 - motor.position_steps();
+        most_lag = most_lag.max(behind.abs() / MICROSTEPS);
+        if most_lag >= FALLS {
+            break;
+        }
+    }
+    most_lag
+}
+
+/// With a fifth more torque than the limit asks for no step is lost, and planned at one and a half times the
+/// limit the same drawing loses some on the same motors. An S-curve uses 0.9 of the limit in exact mode and
+/// 0.7 within a tolerance, so that it may not.
+fn check_reserve(drawing: &Drawing) {
+    const FASTER: f64 = 1.5;
+    for (mode, settings) in modes() {
+        let limit = settings.accel_mm_s2;
+        let faster = PlannerSettings { accel_mm_s2: FASTER * limit, ..settings };
+        let [steps, faster_steps] = [settings, faster].map(|of| steps_of(of, drawing));
+        let lag = greatest_lag(&steps, motor_for(limit, RESERVE));
+        let faster_lag = greatest_lag(&faster_steps, motor_for(limit, RESERVE));
+        // The least torque that is enough, by halving.
+        let (mut low, mut high) = (0.5, RESERVE);
+        for _ in 0..6 {
+            let middle = 0.5 * (low + high);
+            if greatest_lag(&steps, motor_for(limit, middle)) < FALLS { high = middle } else { low = middle }
+        }
+        println!(
+            "| {} | {mode} | {lag:.2} | {high:.2} | {} |",
+            drawing.name,
+            if faster_lag < FALLS { format!("{faster_lag:.2}") } else { "loses steps".into() }
+        );
+        assert!(lag < FALLS, "{} {mode}: loses steps with {RESERVE} of the torque", drawing.name);
+        assert!(
+            settings.jerk_mm_s3.is_some() || faster_lag >= FALLS,
+            "{} {mode}: {faster_lag}",
+            drawing.name
+        );
+    }
+}
+
+#[test]
+fn motors_with_a_fifth_to_spare_lose_no_step_and_at_half_more_they_do() {
+    for drawing in [drawings::hatch(4), drawings::zigzag(60), drawings::circle()] {
+        check_reserve(&drawing);
+    }
+}
+
+#[test]
+#[ignore = "a minute in a release build: .ci/run runs it, and it is a table of docs/results/stepper-motion.md"]
+fn whole_drawings_have_a_fifth_to_spare() {
+    println!("drawing, mode, greatest lag of 2 full steps, least torque / what the limit asks for, at 1.5 x");
+    for drawing in drawings::built().into_iter().chain(drawings::real()) {
+        check_reserve(&drawing);
+    }
+}
+
 /// Prints the table of docs/results/stepper-motion.md:
 /// `cargo test --release -p plotter-motion --test all sim_planner::table -- --ignored --nocapture`
 #[test]
@@ -242,9 +362,15 @@ fn table_of_times() {
             (planned::<1024>(settings, &drawing.ops), planned::<16>(settings, &drawing.ops).0)
         });
         // A short look-ahead, a path that must be kept exactly and a bounded jerk take time, and save none.
-        for ((long, courses), short) in [exact, tolerance, curved, curved_tolerance] {
+        // An S-curve takes the greatest jerk that still lets it keep what lies ahead, which is not always the
+        // quickest: who sees less ahead, and holds back, may be quicker by as much as this further on.
+        const SAVED_BY_CHANCE: f64 = 2e-4;
+        let saved_shares = [1e-9, 1e-9, SAVED_BY_CHANCE, SAVED_BY_CHANCE];
+        for (((long, courses), short), saved) in
+            [exact, tolerance, curved, curved_tolerance].into_iter().zip(saved_shares)
+        {
             assert!(
-                courses > 0 && long > 0.0 && short >= long * (1.0 - 1e-9),
+                courses > 0 && long > 0.0 && short >= long * (1.0 - saved),
                 "{}: {long}, {short} s",
                 drawing.name
             );

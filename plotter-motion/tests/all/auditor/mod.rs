@@ -50,6 +50,8 @@ pub(crate) struct Audit {
     /// The acceleration as a vector, as a share of its limit, in every window; in exact mode in those without
     /// a corner.
     pub(crate) vector_share: f64,
+    /// The jerk as a vector, mm/s³, on average over 20 ms, in the same windows.
+    pub(crate) vector_jerk_mm_s3: f64,
     /// Farthest place of the pen from the drawing, and of the drawing from the pen's way, mm.
     pub(crate) from_drawing_mm: f64,
     pub(crate) from_pen_mm: f64,
@@ -471,6 +473,9 @@ fn narrow_windows(means: &[Point], corners: &[usize], lens: Lens, seen: &mut Aud
     }
 }
 
+/// Between which accelerations the jerk is looked at, s.
+const JERK_S: f64 = 0.02;
+
 /// The second difference of places is an average of the acceleration with weights above 0: where it is above
 /// the limit, the acceleration is somewhere.
 fn vectors(means: &[Point], corners: &[usize], settings: PlannerSettings, lens: Lens, seen: &mut Audit) {
@@ -478,15 +483,33 @@ fn vectors(means: &[Point], corners: &[usize], settings: PlannerSettings, lens: 
     let dt = window as f64 * lens.bin_s;
     let span = 2 * window + window / 2 + 1;
     let in_exact = settings.path == PathMode::Exact;
+    let apart = (JERK_S / lens.bin_s) as usize;
+    let mut accels: Vec<Option<Vec2>> = Vec::new();
     for at in 0..smooth.len().saturating_sub(2 * window) {
         let next = corners.partition_point(|&corner| corner + 1 < at);
         if in_exact && corners.get(next).is_some_and(|&corner| corner <= at + span) {
+            accels.push(None);
             continue;
         }
         let (before, middle, after) = (smooth[at], smooth[at + window], smooth[at + 2 * window]);
         let accel = ((after - middle) - (middle - before)) * (1.0 / (dt * dt));
         seen.vector_share = seen.vector_share.max(felt::share(accel, &settings));
+        accels.push(Some(accel));
     }
+    for pair in accels.windows(apart + 1) {
+        if let (Some(Some(first)), Some(Some(second))) = (pair.first(), pair.last()) {
+            let jerk = (*second - *first).length() / JERK_S;
+            seen.vector_jerk_mm_s3 = seen.vector_jerk_mm_s3.max(jerk);
+        }
+    }
+}
+
+/// The greatest acceleration of a row of places, one a bin, as a share of the limit, corners and all.
+pub(crate) fn share_of_limit(places: &[Point], settings: PlannerSettings, lens: Lens) -> f64 {
+    let path = PathMode::Tolerance { path_tolerance_mm: 0.0 };
+    let mut seen = Audit::default();
+    vectors(places, &[], PlannerSettings { path, ..settings }, lens, &mut seen);
+    seen.vector_share
 }
 
 fn wide_windows(means: &[Point], lens: Lens, seen: &mut Audit) {
