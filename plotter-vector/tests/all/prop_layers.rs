@@ -24,6 +24,23 @@ fn pictures() -> impl Strategy<Value = Colour> {
     })
 }
 
+/// Lines of few colours on a sheet on one side of which a shade lies.
+fn shaded() -> impl Strategy<Value = Colour> {
+    let lines = prop::collection::vec((any::<[u8; 3]>(), 1_u32..60, 0_u32..60, 20_u32..90, 1_u32..5), 1..6);
+    (lines, 64_u32..140, 64_u32..80, 0_u32..80).prop_map(|(lines, width, height, shade)| {
+        let mut channels = Vec::new();
+        for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+            let is_on = |(_, across, down, period, wide): &&([u8; 3], u32, u32, u32, u32)| {
+                (x * across + y * down) / 60 % period < *wide
+            };
+            let colour = lines.iter().find(is_on).map_or([250, 248, 240], |line| line.0);
+            let light = 100 - shade * x / width;
+            channels.extend(colour.map(|level| u8::try_from(u32::from(level) * light / 100).unwrap()));
+        }
+        Colour::new(width, height, channels).unwrap()
+    })
+}
+
 fn pens() -> impl Strategy<Value = Pens> {
     let palette = prop::collection::hash_set(any::<[u8; 3]>(), 1..=16).prop_map(|colours| {
         let mut colours: Vec<_> = colours.into_iter().collect();
@@ -72,16 +89,29 @@ proptest! {
     }
 
     #[test]
-    fn a_mirrored_picture_gives_the_mirrored_layers(picture in pictures(), pens in pens()) {
-        let mirrored: Vec<[u8; 3]> = picture.rows().flat_map(|row| row.iter().rev().copied()).collect();
-        let mirrored =
-            Colour::new(picture.width(), picture.height(), mirrored.as_flattened().to_vec()).unwrap();
+    fn a_mirrored_picture_gives_the_mirrored_layers(
+        picture in prop_oneof![3 => pictures(), 1 => shaded()],
+        pens in pens(),
+        upside_down in any::<bool>(),
+    ) {
+        let (width, height) = (picture.width(), picture.height());
+        let at = |Pixel { x, y }: Pixel| {
+            if upside_down { Pixel::new(x, height - 1 - y) } else { Pixel::new(width - 1 - x, y) }
+        };
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| Pixel::new(x, y)));
+        let mirrored: Vec<[u8; 3]> =
+            places.map(|place| picture.pixels()[(at(place).y * width + at(place).x) as usize]).collect();
+        let mirrored = Colour::new(width, height, mirrored.as_flattened().to_vec()).unwrap();
         let (one, other) = (pens.separate(&picture).unwrap(), pens.separate(&mirrored).unwrap());
         prop_assert_eq!(one.palette(), other.palette());
-        for (ink, back) in inks(&one).into_iter().zip(inks(&other)) {
-            let at = |at: Pixel| Pixel::new(picture.width() - 1 - at.x, at.y);
-            prop_assert_eq!(ink.count(), back.count());
-            prop_assert!(ink.ink().all(|pixel| back.get(at(pixel))));
+        prop_assert_eq!(one.ruling(), other.ruling());
+        for index in 0..one.palette().pens().len() {
+            let whole = [one.bridged(index).unwrap(), other.bridged(index).unwrap()];
+            let own = [one.ink(index).unwrap().clone(), other.ink(index).unwrap().clone()];
+            for [ink, back] in [own, whole] {
+                prop_assert_eq!(ink.count(), back.count());
+                prop_assert!(ink.ink().all(|pixel| back.get(at(pixel))));
+            }
         }
     }
 }

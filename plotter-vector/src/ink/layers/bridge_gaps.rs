@@ -161,6 +161,8 @@ fn width_px(ink: &Bitmap) -> f64 {
             sides += u64::from((bits ^ below.get(at).copied().unwrap_or(0)).count_ones());
             last = bits >> 63;
         }
+        // The right border of a picture as wide as its words, as the left one.
+        sides += last;
     }
     #[expect(clippy::cast_precision_loss, reason = "at most 2³⁰")]
     let width = 2.0 * area as f64 * (4.0 / core::f64::consts::PI) / sides.max(1) as f64;
@@ -256,6 +258,16 @@ mod tests {
         let line = "oooooo\n";
         assert_eq!(bridged(line), line);
         assert_eq!(bridged("xx\n"), "xx\n");
+    }
+
+    #[test]
+    fn ink_at_the_right_border_is_as_wide_as_ink_at_the_left_one() {
+        for width in [63_usize, 64, 65, 128] {
+            let rest = ".".repeat(width - 3);
+            let [left, right] = [format!("###{rest}\n"), format!("{rest}###\n")]
+                .map(|row| width_px(&Bitmap::from_picture(&row.repeat(2)).unwrap()));
+            assert!((left - right).abs() < 1e-12, "{width}: {left} {right}");
+        }
     }
 
     #[test]

@@ -130,7 +130,9 @@ impl Darkness<'_> {
                 }
             }
             let width = f64::from(pixels) * step_px;
-            if width < narrowest.0 {
+            // Of equally narrow ways the one with the darker middle, whichever comes first: else the mirrored
+            // picture has other cores.
+            if width < narrowest.0 || width == narrowest.0 && darkest > narrowest.1 {
                 narrowest = (width, darkest);
             }
         }
@@ -262,4 +264,19 @@ pub(super) fn seeds(
 #[expect(clippy::cast_precision_loss, reason = "a picture's pixels")]
 fn count(pixels: usize) -> f64 {
     pixels as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_two_equally_narrow_ways_the_darker_middle_is_asked_from_either_side() {
+        let rows = [[100_u8, 80, 0], [80, 80, 80], [80, 80, 0]];
+        let mirrored = rows.map(|[left, middle, right]| [right, middle, left]);
+        for values in [rows, mirrored] {
+            let plane = Darkness { values: values.as_flattened(), width: 3, height: 3 };
+            assert!(!plane.is_core(1, 1), "{values:?}");
+        }
+    }
 }

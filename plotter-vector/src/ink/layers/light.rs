@@ -5,6 +5,7 @@
 //! never fill; between the middles of tiles it changes evenly.
 
 use crate::picture::{Colour, Rgb};
+use core::cmp::Ordering;
 
 /// Side of a tile, px: a thousand pixels, of which the median is known far better than the noise.
 const SIDE_PX: u32 = 32;
@@ -26,8 +27,8 @@ const INKED: f32 = 0.1;
 pub(super) struct Light {
     columns: u32,
     rows: u32,
-    /// Size of a tile, px.
-    side: (f32, f32),
+    /// Size of the picture, px.
+    size: (u32, u32),
     tiles: Vec<[f32; 3]>,
     /// The paper where it is brightest.
     full: [f32; 3],
@@ -41,14 +42,19 @@ impl Light {
         if columns < 2 || rows < 2 {
             return None;
         }
-        let side = (as_f32(width) / as_f32(columns), as_f32(height) / as_f32(rows));
-        let mut light = Self { columns, rows, side, tiles: medians(picture, columns, rows), full: [0.0; 3] };
+        let (size, tiles) = ((width, height), medians(picture, columns, rows));
+        let mut light = Self { columns, rows, size, tiles, full: [0.0; 3] };
         light.calm();
         if light.has_steps() {
             return None;
         }
         let mut sorted: Vec<[f32; 3]> = light.tiles.clone();
-        sorted.sort_by(|one, other| sum(one).total_cmp(&sum(other)));
+        // Of equally bright ones by their colours, not by their places.
+        let by_colour = |one: &[f32; 3], other: &[f32; 3]| {
+            let channels = one.iter().zip(other).map(|(one, other)| one.total_cmp(other));
+            channels.fold(sum(one).total_cmp(&sum(other)), Ordering::then)
+        };
+        sorted.sort_by(by_colour);
         let at = |share: f32| {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of tiles")]
             let index = (share * as_f32(columns * rows)) as usize;
@@ -73,8 +79,8 @@ impl Light {
 
     /// The colour of a pixel as if the light were even.
     pub(super) fn even(&self, (x, y): (u32, u32), Rgb(colour): Rgb) -> Rgb {
-        let (left, right) = place(as_f32(x) / self.side.0, self.columns);
-        let (above, down) = place(as_f32(y) / self.side.1, self.rows);
+        let (left, across) = place(x, self.size.0, self.columns);
+        let (above, down) = place(y, self.size.1, self.rows);
         let tile = |column: u32, row: u32| {
             let index = (row * self.columns + column) as usize;
             self.tiles.get(index).copied().unwrap_or(self.full)
@@ -84,8 +90,9 @@ impl Light {
         let mut out = [0; 3];
         let tiles = one.iter().zip(two).zip(three).zip(four).zip(self.full);
         for ((out, level), ((((one, two), three), four), full)) in out.iter_mut().zip(colour).zip(tiles) {
-            let (upper, lower) = (one + (two - one) * right, three + (four - three) * right);
-            let paper = (upper + (lower - upper) * down).max(1.0);
+            let between =
+                |one: f32, other: f32, [of_one, of_other]: [f32; 2]| one * of_one + other * of_other;
+            let paper = between(between(*one, two, across), between(three, four, across), down).max(1.0);
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte")]
             let level = (f32::from(level) * full / paper + 0.5).clamp(0.0, 255.0) as u8;
             *out = level;
@@ -137,19 +144,30 @@ fn sum(levels: &[f32; 3]) -> f32 {
     levels.iter().sum()
 }
 
-/// The tile before a place, of which the last has none behind it, and how far the place is from its middle to
-/// the next one's; beyond the outermost middles the change goes on.
-fn place(at: f32, tiles: u32) -> (u32, f32) {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of tiles")]
-    let before = ((at - 0.5).max(0.0) as u32).min(tiles.saturating_sub(2));
-    (before, at - 0.5 - as_f32(before))
+/// The tile before the middle of a pixel, of which the last has none behind it, and the parts of that tile and
+/// of the next one in the paper there; beyond the outermost middles the change goes on.
+///
+/// The parts are whole numbers, divided: from the other end they are the same two, so a mirrored picture is
+/// evened as the picture is, bit by bit.
+fn place(pixel: u32, pixels: u32, tiles: u32) -> (u32, [f32; 2]) {
+    let whole = 2 * i64::from(pixels);
+    // From the first tile's middle, in parts of which a tile has `whole`.
+    let at = (2 * i64::from(pixel) + 1) * i64::from(tiles) - i64::from(pixels);
+    let before = (at / whole.max(1)).clamp(0, i64::from(tiles.saturating_sub(2)));
+    let behind = at - before * whole;
+    #[expect(clippy::cast_precision_loss, reason = "a part of a tile")]
+    let part = |of: i64| of as f32 / whole as f32;
+    (u32::try_from(before).unwrap_or(0), [part(whole - behind), part(behind)])
 }
 
 /// The median of each tile's channels.
 fn medians(picture: &Colour, columns: u32, rows: u32) -> Vec<[f32; 3]> {
+    // A pixel that lies in two tiles counts in both: so the tiles are the same from the other side.
     let cut = |index: u32, of: u32, length: u32| {
-        let at = |index: u32| (index * (length / of) + index * (length % of) / of) as usize;
-        at(index)..at(index + 1)
+        let (whole, rest) = (length / of, length % of);
+        let (from, to) =
+            (index * whole + index * rest / of, (index + 1) * whole + ((index + 1) * rest).div_ceil(of));
+        from as usize..to as usize
     };
     let width = picture.width() as usize;
     let tile = |(column, row): (u32, u32)| {
@@ -188,4 +206,33 @@ fn median(counts: &[u32; 256], total: u32) -> f32 {
 #[expect(clippy::cast_precision_loss, reason = "a picture's side or a tile's pixels")]
 fn as_f32(number: u32) -> f32 {
     number as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mirrored(picture: &Colour) -> Colour {
+        let rows: Vec<[u8; 3]> = picture.rows().flat_map(|row| row.iter().rev().copied()).collect();
+        Colour::new(picture.width(), picture.height(), rows.as_flattened().to_vec()).unwrap()
+    }
+
+    #[test]
+    fn a_mirrored_sheet_is_evened_as_the_sheet_is() {
+        // Tiles of 35 1/3 px, a shade from the left, and lines.
+        let (width, height) = (106_u32, 70_u32);
+        let pixel = |x: u32, y: u32| {
+            let paper = 150 + x.min(105) * y.max(20) / 70;
+            let ink = if (x * 3 + y * 5) % 41 < 4 { [0.2, 0.5, 0.8] } else { [1.0, 0.95, 0.9] };
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a level")]
+            ink.map(|part| (part * f64::from(paper.min(255))) as u8)
+        };
+        let pixels: Vec<[u8; 3]> =
+            (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect();
+        let picture = Colour::new(width, height, pixels.as_flattened().to_vec()).unwrap();
+        let even = |picture: &Colour| Light::of(picture).unwrap().evened(picture);
+        let back = mirrored(&picture);
+        assert_ne!(even(&picture), picture);
+        assert_eq!(even(&back), mirrored(&even(&picture)));
+    }
 }

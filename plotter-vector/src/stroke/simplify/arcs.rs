@@ -87,12 +87,12 @@ impl Bounded {
 
     /// What `bend` makes of a line's sites, beside the vertices of its polyline, where that saves vertices; a
     /// closed line within the tolerance of one circle is that circle.
-    pub(super) fn bent(
+    pub(super) fn bent<T: Bent>(
         &self,
         sites: &[PxPoint],
         closed: bool,
-        bend: impl FnOnce(Promise, Vec<PxPoint>, &[PxPoint]) -> Curve,
-    ) -> Curve {
+        bend: impl FnOnce(Promise, Vec<PxPoint>, &[PxPoint]) -> T,
+    ) -> T {
         let straight = self.polyline(sites, closed);
         let mut line: Vec<PxPoint> = sites.iter().copied().filter(|site| site.is_finite()).collect();
         line.dedup();
@@ -100,14 +100,25 @@ impl Bounded {
             line.pop();
         }
         if straight.len() < 3 || line.len() < 3 {
-            return straight.into();
+            return Curve::from(straight).into();
         }
         let promise = Promise::new(self.tolerance_px);
         if let Some(circle) = closed.then(|| round(promise, &line)).flatten() {
-            return circle;
+            return circle.into();
         }
         let bent = bend(promise, line, &straight);
-        if bent.vertices.len() < straight.len() { bent } else { straight.into() }
+        if bent.vertex_count() < straight.len() { bent } else { Curve::from(straight).into() }
+    }
+}
+
+/// A curve, or what becomes one with as many vertices.
+pub(super) trait Bent: From<Curve> {
+    fn vertex_count(&self) -> usize;
+}
+
+impl Bent for Curve {
+    fn vertex_count(&self) -> usize {
+        self.vertices.len()
     }
 }
 

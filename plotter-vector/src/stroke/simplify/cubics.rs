@@ -1,7 +1,7 @@
 //! [`Bounded::cubics`]: lines and cubic curves, few of them, for a promised error.
 
 use super::Bounded;
-use super::arcs::{number, smoothed};
+use super::arcs::{Bent, number, smoothed};
 use super::corners::{Anchor, anchors};
 use super::cubic_fit::{Fit, Joint};
 use super::doubling_search::farthest;
@@ -49,12 +49,14 @@ impl Bounded {
     /// and then by Newton's steps. Where one does not do, Schneider divides it at its worst site; here the
     /// longest one that does is looked for by doubling and halving, as with arcs. Every segment that is taken
     /// has been checked site by site: each site's distance to its place on the curve, those places in order,
-    /// and how far the curve can be from the chord between two of them by its greatest second derivative
-    /// there, which together bound the Fréchet distance. Then the joints are moved and turned to where the
-    /// squared distances are less. What no curve will do for is drawn with straight lines. No segment stands
-    /// for more than [`MAX_REACH_PX`](crate::stroke::MAX_REACH_PX) sites and each is tried a fixed number of
-    /// times, so the work is bounded by sites × the logarithm of the reach: 1 to 31 µs a site, up to 15 times
-    /// that of arcs.
+    /// and how far the curve can be from the chord between two of them by its greatest second derivative there,
+    /// which together bound the Fréchet distance. The longest one from one end need not be that from the other,
+    /// so both are begun from, and the fewer vertices are taken. Then the joints are moved and turned to where
+    /// the squared distances are less. What no curve will do for is drawn with straight lines. No segment
+    /// stands for more than [`MAX_REACH_PX`](crate::stroke::MAX_REACH_PX) sites and each is tried a fixed
+    /// number of times, so the work is bounded by sites × the logarithm of the reach: 1 to 31 µs a site from
+    /// one end, up to 15 times that of arcs. Both ends take a sixth more, and up to twice as much where
+    /// straight lines alone will do.
     ///
     /// Source: P. J. Schneider, "An algorithm for automatically fitting digitized curves", in Graphics Gems
     /// (1990).
@@ -71,22 +73,91 @@ impl Bounded {
     /// ```
     #[must_use]
     pub fn cubics(&self, sites: &[PxPoint], closed: bool) -> Curve {
+        let one = self.search(sites, closed);
+        // No curve has fewer.
+        if one.vertex_count() < 3 {
+            return one.finished();
+        }
+        let backwards: Vec<PxPoint> = sites.iter().rev().copied().collect();
+        let other = self.search(&backwards, closed);
+        if other.vertex_count() >= one.vertex_count() {
+            return one.finished();
+        }
+        let mut curve = other.finished();
+        curve.reverse();
+        curve
+    }
+
+    /// The joints as found from the first site on.
+    fn search(&self, sites: &[PxPoint], closed: bool) -> Found {
         self.bent(sites, closed, |promise, line, straight| {
             if closed { around(promise, line, straight) } else { along(promise, &line, straight) }
         })
     }
 }
 
+/// The parts of a line, each from a corner to the next.
+#[derive(Debug)]
+struct Found {
+    parts: Vec<Part>,
+}
+
+/// Joints are moved when the search is over: that changes none of their number.
+#[derive(Debug)]
+enum Part {
+    /// As it is to be.
+    Done(Curve),
+    Open(CubicFitter, Vec<Joint>),
+    /// Closed, without corners.
+    Ring(CubicFitter, Vec<Joint>),
+}
+
+impl From<Curve> for Found {
+    fn from(curve: Curve) -> Self {
+        Self { parts: vec![Part::Done(curve)] }
+    }
+}
+
+impl Bent for Found {
+    fn vertex_count(&self) -> usize {
+        let counts = self.parts.iter().map(|part| match part {
+            Part::Done(curve) => curve.vertices.len(),
+            Part::Open(_, joints) | Part::Ring(_, joints) => joints.len(),
+        });
+        // Where two parts meet they have one vertex together.
+        let segments: usize = counts.clone().map(|count| count.saturating_sub(1)).sum();
+        segments + usize::from(counts.max().is_some_and(|most| most > 0))
+    }
+}
+
+impl Found {
+    fn finished(self) -> Curve {
+        let mut parts = self.parts.into_iter().map(|part| match part {
+            Part::Done(curve) => curve,
+            Part::Open(way, mut joints) => {
+                way.improve(&mut joints);
+                joints.into()
+            }
+            Part::Ring(way, joints) => improved_ring(way, joints).into(),
+        });
+        let first = parts.next().unwrap_or_default();
+        parts.fold(first, |mut curve, part| {
+            curve.append(part);
+            curve
+        })
+    }
+}
+
 /// The segments of an open line, from corner to corner.
-fn along(promise: Promise, line: &[PxPoint], straight: &[PxPoint]) -> Curve {
+fn along(promise: Promise, line: &[PxPoint], straight: &[PxPoint]) -> Found {
     between_corners(promise, line, &anchors(promise, line, straight, false))
 }
 
 /// The segments of a closed line.
-fn around(promise: Promise, mut line: Vec<PxPoint>, straight: &[PxPoint]) -> Curve {
+fn around(promise: Promise, mut line: Vec<PxPoint>, straight: &[PxPoint]) -> Found {
     let mut anchors = anchors(promise, &line, straight, true);
     let Some(first) = anchors.iter().position(|anchor| anchor.is_corner) else {
-        return ring(promise, line).into();
+        return Found { parts: vec![ring(promise, line)] };
     };
     // The last one is the first one again: it comes back after the turn.
     anchors.pop();
@@ -101,8 +172,8 @@ fn around(promise: Promise, mut line: Vec<PxPoint>, straight: &[PxPoint]) -> Cur
 }
 
 /// The segments of a line, each part between two corners for itself.
-fn between_corners(promise: Promise, line: &[PxPoint], anchors: &[Anchor]) -> Curve {
-    let mut curve = Curve::default();
+fn between_corners(promise: Promise, line: &[PxPoint], anchors: &[Anchor]) -> Found {
+    let mut parts = Vec::new();
     let mut start = 0;
     for end in 1..anchors.len() {
         let part = anchors.get(start..=end).unwrap_or(&[]);
@@ -110,10 +181,10 @@ fn between_corners(promise: Promise, line: &[PxPoint], anchors: &[Anchor]) -> Cu
         if !last.is_corner && end + 1 < anchors.len() {
             continue;
         }
-        curve.append(part_between(promise, line, first, last, part));
+        parts.push(part_between(promise, line, first, last, part));
         start = end;
     }
-    curve
+    Found { parts }
 }
 
 fn part_between(
@@ -122,7 +193,7 @@ fn part_between(
     first: &Anchor,
     last: &Anchor,
     straight: &[Anchor],
-) -> Curve {
+) -> Part {
     let links = |ends: &[Anchor]| match ends {
         [from, to] => {
             let sites = line.get(from.site + 1..to.site).unwrap_or(&[]);
@@ -131,7 +202,7 @@ fn part_between(
         _ => false,
     };
     let kept = straight.windows(2).all(links);
-    let lines = || straight.iter().map(|anchor| anchor.at).collect::<Vec<PxPoint>>().into();
+    let lines = || Part::Done(straight.iter().map(|anchor| anchor.at).collect::<Vec<PxPoint>>().into());
     if kept && straight.len() < 3 {
         return lines();
     }
@@ -141,9 +212,8 @@ fn part_between(
     smooth.last_mut().into_iter().for_each(|slot| *slot = last.at);
     let directions = directions(&sites, false);
     let mut way = CubicFitter { fit: Fit { promise, sites }, smooth, directions };
-    let mut joints = way.joints();
-    way.improve(&mut joints);
-    if kept && joints.len() >= straight.len() { lines() } else { joints.into() }
+    let joints = way.joints();
+    if kept && joints.len() >= straight.len() { lines() } else { Part::Open(way, joints) }
 }
 
 impl From<Vec<Joint>> for Curve {
@@ -157,42 +227,52 @@ impl From<Vec<Joint>> for Curve {
 }
 
 /// The segments of a closed line without corners.
-fn ring(promise: Promise, mut sites: Vec<PxPoint>) -> Vec<Joint> {
+fn ring(promise: Promise, mut sites: Vec<PxPoint>) -> Part {
     let count = sites.len();
     let mut smooth = smoothed(promise, &sites, true);
-    let lap = |sites: &[PxPoint], smooth: &[PxPoint]| {
-        let around = |places: &[PxPoint]| places.iter().chain(places.first()).copied().collect();
-        let directions = directions(sites, true);
-        CubicFitter { fit: Fit { promise, sites: around(sites) }, smooth: around(smooth), directions }
-    };
-    let mut way = lap(&sites, &smooth);
+    let mut way = lap(promise, &sites, &smooth);
     let mut best = way.joints();
     // The first lap began anywhere: begin again where its first segment ended.
     if let Some(seam) = best.get(1).map(|joint| joint.site).filter(|seam| *seam < count) {
         sites.rotate_left(seam);
         smooth.rotate_left(seam);
-        let mut turned = lap(&sites, &smooth);
+        let mut turned = lap(promise, &sites, &smooth);
         let again = turned.joints();
         if again.len() <= best.len() {
             (way, best) = (turned, again);
-        } else {
-            sites.rotate_right(seam);
-            smooth.rotate_right(seam);
         }
     }
-    way.improve(&mut best);
+    Part::Ring(way, best)
+}
+
+/// Once around a closed line.
+fn lap(promise: Promise, sites: &[PxPoint], smooth: &[PxPoint]) -> CubicFitter {
+    let around = |places: &[PxPoint]| places.iter().chain(places.first()).copied().collect();
+    let directions = directions(sites, true);
+    CubicFitter { fit: Fit { promise, sites: around(sites) }, smooth: around(smooth), directions }
+}
+
+/// The joints of a lap, moved.
+fn improved_ring(way: CubicFitter, mut joints: Vec<Joint>) -> Vec<Joint> {
+    way.improve(&mut joints);
     // The seam could not move: turn the ring by half and move it too.
-    let half = best.len() / 2;
-    let Some(seam) = best.get(half).map(|joint| joint.site).filter(|_| best.len() > 3) else { return best };
-    best.pop();
-    best.iter_mut().for_each(|joint| joint.site = (joint.site + count - seam) % count);
-    best.rotate_left(half);
-    let Some(first) = best.first().copied() else { return best };
-    best.push(Joint { site: count, handles: None, ..first });
-    sites.rotate_left(seam);
-    smooth.rotate_left(seam);
-    lap(&sites, &smooth).improve(&mut best);
-    best
+    let half = joints.len() / 2;
+    let Some(seam) = joints.get(half).map(|joint| joint.site).filter(|_| joints.len() > 3) else {
+        return joints;
+    };
+    let CubicFitter { fit: Fit { promise, mut sites }, mut smooth, .. } = way;
+    sites.pop();
+    smooth.pop();
+    let count = sites.len();
+    joints.pop();
+    joints.iter_mut().for_each(|joint| joint.site = (joint.site + count - seam) % count.max(1));
+    joints.rotate_left(half);
+    let Some(first) = joints.first().copied() else { return joints };
+    joints.push(Joint { site: count, handles: None, ..first });
+    sites.rotate_left(seam.min(count));
+    smooth.rotate_left(seam.min(count));
+    lap(promise, &sites, &smooth).improve(&mut joints);
+    joints
 }
 
 /// The direction of the line at each site: the slope of the straight line with the least squared distances,
