@@ -194,14 +194,16 @@ mod tests {
 
     #[test]
     fn a_stroke_of_many_segments_is_searched_as_well() {
+        // More than are held: the older half goes three times.
+        const COUNT: i32 = 140_000;
         let mut deviation = PathDeviation::new(0.1);
         let at = |i: i32| Point::new(0.3 * f64::from(i), 0.0);
-        for i in 0..600_000 {
+        for i in 0..COUNT {
             deviation.draw(at(i), at(i + 1));
             deviation.step(Point::new(0.3 * f64::from(i) + 0.3, 0.02));
         }
         deviation.lift();
-        deviation.step(Point::new(600_000.0 * 0.3, 7.0));
+        deviation.step(Point::new(f64::from(COUNT) * 0.3, 7.0));
         deviation.lifted();
         let (from_path, from_steps) = deviation.most_mm();
         assert!((from_path - 7.0).abs() < 1e-6, "{from_path}");

@@ -123,7 +123,7 @@ fn a_grid_calibrates_the_simulated_camera() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+#[ignore = "long: .ci/run has it in release"]
 fn the_animation_is_a_picture_of_bounded_size_and_time() {
     let folder = tempfile::tempdir().unwrap();
     let image = picture(&folder, "drawing.png", drawing);
@@ -145,7 +145,7 @@ fn the_animation_is_a_picture_of_bounded_size_and_time() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+#[ignore = "long: .ci/run has it in release"]
 fn a_correction_makes_a_bent_picture_straight() {
     let folder = tempfile::tempdir().unwrap();
     // A frame and a line across it.

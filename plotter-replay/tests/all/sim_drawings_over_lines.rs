@@ -456,7 +456,7 @@ fn the_cable_out_for_ten_seconds_costs_ten_seconds() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+#[ignore = "long: .ci/run has it in release"]
 fn a_stop_over_a_bad_line_is_obeyed_and_costs_no_target() {
     let mut slowest = Duration::ZERO;
     for number in 0..20 {
@@ -485,7 +485,7 @@ fn a_stop_over_a_bad_line_is_obeyed_and_costs_no_target() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+#[ignore = "long: .ci/run has it in release"]
 fn a_host_killed_and_started_anew_goes_on_at_the_right_target() {
     for number in 0..20 {
         let moves = drawing(number, 100);

@@ -8,6 +8,7 @@
 
 mod chains;
 pub(crate) mod lettering;
+mod near_nodes;
 mod on_sheet;
 pub(crate) mod plan;
 pub(crate) mod point_tree;

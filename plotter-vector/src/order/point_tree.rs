@@ -110,13 +110,16 @@ impl PointTree {
         found: &mut impl FnMut(u32, f64) -> f64,
     ) {
         let mut squared = squared;
-        self.search(at, (0, self.ids.len()), false, &mut squared, place, found);
+        self.search(at, PxPoint::new(0.0, 0.0), (0, self.ids.len()), false, &mut squared, place, found);
     }
 
-    /// Searches a range; the recursion is as deep as the tree, the logarithm of the number of points.
+    /// Searches a range whose rectangle begins so far `beside` the place, along x and along y; the recursion is
+    /// as deep as the tree, the logarithm of the number of points.
+    #[expect(clippy::too_many_arguments, reason = "a recursion's own")]
     fn search(
         &self,
         at: PxPoint,
+        beside: PxPoint,
         (low, high): (usize, usize),
         by_y: bool,
         squared: &mut f64,
@@ -135,10 +138,11 @@ impl PointTree {
         let beyond = if by_y { dy } else { dx };
         let (below, above) = ((low, middle), (middle + 1, high));
         let (near, far) = if beyond < 0.0 { (below, above) } else { (above, below) };
-        self.search(at, near, !by_y, squared, place, found);
-        // Not `<=`: of many points in one place a search must not look at all.
-        if beyond * beyond < *squared {
-            self.search(at, far, !by_y, squared, place, found);
+        self.search(at, beside, near, !by_y, squared, place, found);
+        // Both coordinates count, and not `<=`: of many points in one place a search must not look at all.
+        let beside = if by_y { PxPoint::new(beside.x, dy) } else { PxPoint::new(dx, beside.y) };
+        if beside.x * beside.x + beside.y * beside.y < *squared {
+            self.search(at, beside, far, !by_y, squared, place, found);
         }
     }
 }

@@ -43,7 +43,7 @@ const FEWEST_SHAKES: u64 = 300;
 /// A shorter order of the visits, by the places where they are entered. `budget` counts what is looked at and
 /// what is moved.
 pub(super) fn shorten(sites: &Sites<'_>, entries: Vec<u32>, from: Option<PxPoint>, budget: u64) -> Vec<u32> {
-    if entries.len() != sites.len() || entries.len() < 2 {
+    if entries.len() != sites.len() || entries.len() < 2 || !has_way(sites, &entries, from) {
         return entries;
     }
     let mut search = Search::new(sites, &entries, from, budget);
@@ -51,6 +51,13 @@ pub(super) fn shorten(sites: &Sites<'_>, entries: Vec<u32>, from: Option<PxPoint
     search.turned = TURNED_LATER;
     search.shake();
     search.route.visits().into_iter().map(|visit| visit.entry).collect()
+}
+
+/// Whether the pen travels at all: a million dots in one place are in order, and no look makes them more so.
+fn has_way(sites: &Sites<'_>, entries: &[u32], from: Option<PxPoint>) -> bool {
+    let mut at = from;
+    let mut visits = entries.iter().filter_map(|entry| sites.enter(*entry));
+    visits.any(|visit| at.replace(sites.place(visit.exit)).is_some_and(|at| at != sites.place(visit.entry)))
 }
 
 /// A change of the route, as read in a direction.
@@ -440,6 +447,15 @@ mod tests {
             visits.push(2 * site);
         }
         (sites, visits)
+    }
+
+    #[test]
+    fn where_the_pen_never_travels_there_is_no_way() {
+        let (sites, visits) = lines([((0, 0), (5, 5)), ((5, 5), (9, 0))]);
+        assert!(!has_way(&sites, &visits, None) && !has_way(&sites, &visits, Some(at(0, 0))));
+        assert!(has_way(&sites, &visits, Some(at(1, 0))));
+        let (sites, visits) = lines([((0, 0), (5, 5)), ((5, 6), (9, 0))]);
+        assert!(has_way(&sites, &visits, None));
     }
 
     /// What is left when no small change gains any more, before anything is shaken: the things in order,

@@ -15,8 +15,8 @@
 //! 6, 1873). A connected component with 2k ends in odd nodes then is max(1, k) trails, fewer is impossible.
 
 use super::chains::Chains;
-use super::plan::{Legs, Stroke, Trail, all_vertices};
-use super::point_tree::PointTree;
+use super::near_nodes::NearNodes;
+use super::plan::{Legs, Stroke, Trail};
 use super::sites::{NONE, number};
 use crate::disjoint_sets::DisjointSets;
 use crate::parallel::each;
@@ -28,9 +28,8 @@ use core::ops::Range;
 /// most.
 const STRAIGHT_COS: f64 = -core::f64::consts::FRAC_1_SQRT_2;
 
-/// Nodes within the gap that an end looks at, partners each node offers it on either side of straight on, and
-/// ends of a node of which all pairs are looked at: limits for drawings that meet in few places.
-const NEAR_NODES: usize = 16;
+/// Partners that a node offers an end on either side of straight on, and ends of a node of which all pairs are
+/// looked at: limits for drawings that meet in few places.
 const OFFERS: usize = 2;
 const OFFERED: usize = 2 * OFFERS + 2;
 const ALL_PAIRS: usize = 24;
@@ -52,14 +51,14 @@ pub(crate) struct Joining {
 pub(crate) fn trails<'a>(strokes: &'a [Stroke<'a>], joining: &Joining) -> (Legs<'a>, Vec<Trail>) {
     let mut meeting = Meeting::new(strokes, joining.one_stroke);
     let gap_px = if joining.gap_px > 0.0 { joining.gap_px } else { 0.0 };
-    let tree = meeting.tree(gap_px);
-    meeting.go_on_straight(&tree, gap_px);
+    let near = meeting.near_nodes(gap_px);
+    meeting.go_on_straight(&near, gap_px);
     if joining.one_stroke {
         meeting.pair_the_rest();
         if joining.at_corners && gap_px > 0.0 {
-            meeting.bridge_the_rest(&tree, gap_px);
+            meeting.bridge_the_rest(&near, gap_px);
         }
-        drop(tree);
+        drop(near);
         meeting.splice();
     }
     meeting.into_chains().assemble()
@@ -69,8 +68,6 @@ pub(crate) fn trails<'a>(strokes: &'a [Stroke<'a>], joining: &Joining) -> (Legs<
 /// for the last vertex.
 struct Meeting<'a> {
     strokes: &'a [Stroke<'a>],
-    /// Vertices of the whole drawing.
-    vertices: &'a [PxPoint],
     /// First vertex of each closed stroke; nothing where there is none.
     starts: Vec<u32>,
     /// Strokes that are more than one line, and in which directions these end.
@@ -81,16 +78,13 @@ struct Meeting<'a> {
     nodes: Vec<u32>,
     /// Node of each end; `NONE` of a dot's.
     node_of: Vec<u32>,
-    /// Whether an end is the first of its node, by number: strokes that are near on the sheet are near in
-    /// memory too, where nodes are not.
-    is_first: Vec<bool>,
     /// What each end goes on in; `NONE` where it ends.
     partners: Vec<u32>,
 }
 
-/// Ends for whose nodes pairs are looked for in one go: some milliseconds of work. And such parts before what
-/// was found is put together, so that it is not there twice.
-const ENDS_TOGETHER: u32 = 4096;
+/// Nodes for which pairs are looked for in one go: some milliseconds of work. And such parts before what was
+/// found is put together, so that it is not there twice.
+const NODES_TOGETHER: usize = 4096;
 const PARTS_TOGETHER: usize = 32;
 
 /// Two ends that go on in each other, after the cosine between their directions.
@@ -134,12 +128,10 @@ impl<'a> Meeting<'a> {
         let bent = strokes.iter().zip(0..).filter(is_bent).map(|(stroke, index)| (index, stroke.outward()));
         let mut meeting = Self {
             strokes,
-            vertices: all_vertices(strokes),
             bent: bent.collect(),
             ends,
             nodes,
             node_of: vec![NONE; 2 * strokes.len()],
-            is_first: vec![false; 2 * strokes.len()],
             partners: vec![NONE; 2 * strokes.len()],
             starts,
         };
@@ -153,8 +145,6 @@ impl<'a> Meeting<'a> {
                     *slot = number(node);
                 }
             }
-            let first = same.first().and_then(|end| meeting.is_first.get_mut(*end as usize));
-            first.into_iter().for_each(|first| *first = true);
             if same.len() > 1 {
                 by_angle.clear();
                 by_angle.extend(same.iter().map(|end| (meeting.angle(*end), *end)));
@@ -170,39 +160,17 @@ impl<'a> Meeting<'a> {
         meeting
     }
 
-    /// The nodes, each by the vertex of its first end; none where nothing is joined across a gap.
-    fn tree(&self, gap_px: f64) -> PointTree {
-        let searched = if gap_px > 0.0 { self.is_first.len() } else { 0 };
-        let vertices = self.firsts(0..number(searched)).map(|end| self.vertex(end)).collect();
-        PointTree::of(vertices, &|vertex| self.vertex_place(vertex))
+    /// The nodes that may be near each other; none where nothing is joined across a gap.
+    fn near_nodes(&self, gap_px: f64) -> NearNodes {
+        // By ends, which lie in the order of the strokes in memory.
+        let ends = if gap_px > 0.0 { self.node_of.len() } else { 0 };
+        let places = (0..number(ends)).zip(&self.node_of).filter(|(_, node)| **node != NONE);
+        NearNodes::new(gap_px, places.map(|(end, node)| (self.place(end), *node)))
     }
 
-    /// The vertex of the drawing at which an end lies.
-    fn vertex(&self, end: u32) -> u32 {
-        let stroke = self.strokes.get(end as usize / 2);
-        stroke.map_or(NONE, |stroke| stroke.end_vertex(self.start(end / 2), end % 2 == 1))
-    }
-
-    /// Where a vertex lies.
-    fn vertex_place(&self, vertex: u32) -> PxPoint {
-        self.vertices.get(vertex as usize).copied().unwrap_or_default()
-    }
-
-    /// The node at a vertex with which a stroke ends.
-    fn node_at_vertex(&self, vertex: u32) -> u32 {
-        let stroke = self.strokes.partition_point(|stroke| stroke.end_vertices().1 < vertex);
-        let last = self.strokes.get(stroke).is_some_and(|stroke| stroke.end_vertices().1 == vertex);
-        self.node_at(number(2 * stroke + usize::from(last)))
-    }
-
-    /// The first ends of nodes among some ends.
-    fn firsts(&self, ends: Range<u32>) -> impl Iterator<Item = u32> {
-        ends.filter(|end| self.is_first.get(*end as usize) == Some(&true))
-    }
-
-    /// The node of an end.
-    fn node_at(&self, end: u32) -> u32 {
-        self.node_of.get(end as usize).copied().unwrap_or(NONE)
+    /// Where a node lies.
+    fn node_place(&self, node: u32) -> PxPoint {
+        self.node(node).first().map_or_else(PxPoint::default, |end| self.place(*end))
     }
 
     fn node(&self, index: u32) -> &[u32] {
@@ -264,16 +232,32 @@ impl<'a> Meeting<'a> {
     }
 
     /// Pairs ends within the gap that go on in each other, the straightest first.
-    fn go_on_straight(&mut self, tree: &PointTree, gap_px: f64) {
-        let mut pairs: Vec<StraightPair> = Vec::new();
-        let all = number(self.is_first.len());
-        let parts: Vec<u32> = (0..all).step_by(ENDS_TOGETHER as usize).collect();
-        for parts in parts.chunks(PARTS_TOGETHER) {
-            let of_part = |from: u32| {
-                self.straight_pairs(tree, gap_px, from..all.min(from.saturating_add(ENDS_TOGETHER)))
-            };
-            each(parts.to_vec(), of_part).into_iter().for_each(|mut own| pairs.append(&mut own));
-        }
+    fn go_on_straight(&mut self, near: &NearNodes, gap_px: f64) {
+        let mut pairs = in_parts(self.nodes.len(), |nodes| {
+            let mut pairs = Vec::new();
+            (number(nodes.start)..number(nodes.end))
+                .for_each(|node| self.straight_on(node, node, gap_px, &mut pairs));
+            pairs
+        });
+        pairs.append(&mut in_parts(near.len(), |firsts| {
+            let mut pairs = Vec::new();
+            near.pairs(
+                firsts,
+                |node| self.node_place(node),
+                |a, b| {
+                    // Of a node of few ends each is offered.
+                    if self.node(b).len() <= OFFERED {
+                        self.straight_on(a, b, gap_px, &mut pairs);
+                    } else {
+                        self.straight_on(b, a, gap_px, &mut pairs);
+                        if self.node(a).len() > OFFERED {
+                            self.straight_on(a, b, gap_px, &mut pairs);
+                        }
+                    }
+                },
+            );
+            pairs
+        }));
         let far = |pair: &StraightPair| self.place(pair.1).distance(self.place(pair.2));
         // Ends in one place come before ends across a gap only where they are as straight.
         pairs.sort_unstable_by(|a, b| {
@@ -287,31 +271,19 @@ impl<'a> Meeting<'a> {
         }
     }
 
-    /// Pairs of free ends that go on in each other, one of them at a node that begins with one of these ends.
-    fn straight_pairs(&self, tree: &PointTree, gap_px: f64, ends: Range<u32>) -> Vec<StraightPair> {
-        let mut pairs = Vec::new();
-        let mut near: Vec<u32> = Vec::new();
-        for first in self.firsts(ends) {
-            let node = self.node_at(first);
-            let own = self.node(node);
-            if (gap_px <= 0.0 && own.len() < 2) || own.iter().all(|end| self.partner(*end).is_some()) {
-                continue;
-            }
-            self.nodes_near(tree, first, gap_px, &mut near);
-            for end in own.iter().filter(|end| self.partner(**end).is_none()) {
-                for other in core::iter::once(node).chain(near.iter().copied()) {
-                    for partner in self.offers(*end, other).filter(|partner| partner != end) {
-                        let cos = self.hairpin(*end, partner);
-                        // Within a node of few ends each pair is come by from both of them.
-                        let is_known = other == node && own.len() <= OFFERED && partner < *end;
-                        if !is_known && cos <= STRAIGHT_COS && self.may_join(*end, partner, gap_px) {
-                            pairs.push((cos, (*end).min(partner), (*end).max(partner)));
-                        }
-                    }
+    /// Adds the pairs of free ends of which one, at the node `from`, goes on in the other, at the node `to`.
+    fn straight_on(&self, from: u32, to: u32, gap_px: f64, pairs: &mut Vec<StraightPair>) {
+        let own = self.node(from);
+        for end in own.iter().filter(|end| self.partner(**end).is_none()) {
+            for partner in self.offers(*end, to).filter(|partner| partner != end) {
+                let cos = self.hairpin(*end, partner);
+                // Within a node of few ends each pair is come by from both of them.
+                let is_known = from == to && own.len() <= OFFERED && partner < *end;
+                if !is_known && cos <= STRAIGHT_COS && self.may_join(*end, partner, gap_px) {
+                    pairs.push((cos, (*end).min(partner), (*end).max(partner)));
                 }
             }
         }
-        pairs
     }
 
     /// The ends of a node nearest to straight on from `end`.
@@ -367,20 +339,24 @@ impl<'a> Meeting<'a> {
     }
 
     /// Pairs the free end of each node with that of another one within the gap, the nearest first.
-    fn bridge_the_rest(&mut self, tree: &PointTree, gap_px: f64) {
-        let mut pairs: Vec<(f64, u32, u32)> = Vec::new();
-        let mut near: Vec<u32> = Vec::new();
+    fn bridge_the_rest(&mut self, near: &NearNodes, gap_px: f64) {
         let free = |node: u32| self.node(node).iter().copied().find(|end| self.partner(*end).is_none());
-        for first in self.firsts(0..number(self.is_first.len())) {
-            let Some(end) = free(self.node_at(first)) else { continue };
-            let at = self.place(first);
-            self.nodes_near(tree, first, gap_px, &mut near);
-            for partner in near.iter().filter_map(|other| free(*other)) {
-                if self.may_join(end, partner, gap_px) {
-                    pairs.push((at.distance(self.place(partner)), end.min(partner), end.max(partner)));
-                }
-            }
-        }
+        let mut pairs: Vec<(f64, u32, u32)> = in_parts(near.len(), |firsts| {
+            let mut pairs = Vec::new();
+            near.pairs(
+                firsts,
+                |node| self.node_place(node),
+                |a, b| {
+                    if let (Some(end), Some(partner)) = (free(a), free(b))
+                        && self.may_join(end, partner, gap_px)
+                    {
+                        let apart = self.place(end).distance(self.place(partner));
+                        pairs.push((apart, end.min(partner), end.max(partner)));
+                    }
+                },
+            );
+            pairs
+        });
         pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         for (_, a, b) in pairs {
             if self.partner(a).is_none() && self.partner(b).is_none() {
@@ -480,21 +456,19 @@ impl<'a> Meeting<'a> {
         }
         (chains, open)
     }
+}
 
-    /// The nodes within the gap of one, besides itself, which is told by its first end; not all where there
-    /// are very many.
-    fn nodes_near(&self, tree: &PointTree, first: u32, gap_px: f64, near: &mut Vec<u32>) {
-        // A little more, for the rounding of the differences.
-        let reach = gap_px * gap_px * (1.0 + 1e-9);
-        near.clear();
-        let own = self.vertex(first);
-        tree.visit(self.vertex_place(own), reach, &|vertex| self.vertex_place(vertex), &mut |other, _| {
-            if other != own {
-                near.push(self.node_at_vertex(other));
-            }
-            if near.len() < NEAR_NODES { reach } else { -1.0 }
-        });
+/// What is found for so many things, some of them in one go.
+fn in_parts<T: Send>(count: usize, find: impl Fn(Range<usize>) -> Vec<T> + Sync) -> Vec<T> {
+    let mut all = Vec::new();
+    let parts: Vec<Range<usize>> = (0..count)
+        .step_by(NODES_TOGETHER)
+        .map(|from| from..count.min(from.saturating_add(NODES_TOGETHER)))
+        .collect();
+    for parts in parts.chunks(PARTS_TOGETHER) {
+        each(parts.to_vec(), &find).into_iter().for_each(|mut own| all.append(&mut own));
     }
+    all
 }
 
 /// Where a stroke ends; a closed one ends at its vertex `start`.

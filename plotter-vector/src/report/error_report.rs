@@ -102,7 +102,6 @@ impl ErrorTally {
     ) {
         let own = usize::from(borrowed.0)..figure.len() - usize::from(borrowed.1).min(figure.len());
         for vertex in kept.iter().filter(|index| own.contains(index)) {
-            debug_assert!(*vertex < figure.len(), "a vertex is a pixel of the figure");
             if let Some(pixel) = figure.get(*vertex)
                 && counts(*pixel)
             {

@@ -201,7 +201,7 @@ fn a_corner_of_one_pixel_with_grey_rims_is_sharp() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+#[ignore = "long: .ci/run has it in release"]
 fn a_small_circle_of_one_pixel_with_grey_rims_has_no_corners() {
     // The promised error twice, for the chords go from one side to the other.
     const MOST_PX: f64 = 0.8;
@@ -215,7 +215,7 @@ fn a_small_circle_of_one_pixel_with_grey_rims_has_no_corners() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+#[ignore = "long: .ci/run has it in release"]
 fn the_corners_of_a_narrow_meander_with_grey_rims_are_kept() {
     /// Share of the corners that are found within a pixel, and their mean distance, px.
     const SHARE: f64 = 0.93;

@@ -16,7 +16,7 @@ proptest! {
 
     /// Whatever is drawn, it ends within a bound of its lines' length, and no command leaves the area.
     #[test]
-    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+    #[ignore = "long: .ci/run has it in release"]
     fn it_ends_and_never_leaves_the_area(
         lines in prop::collection::vec((prop::collection::vec(place(), 2..5), 1.0..9.0), 0..4),
         blur in 0.0..3.0,

@@ -87,7 +87,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(600))]
 
     #[test]
-    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+    #[ignore = "long: .ci/run has it in release"]
     fn a_drawing_lies_within_its_picture(gray in noise(), vectorizer in vectorizers(), band_rows in 1_u32..40) {
         let traced = vectorizer.vectorize(&gray).unwrap();
         prop_assert_eq!(outside(&traced.drawing), None, "{:?}", vectorizer);

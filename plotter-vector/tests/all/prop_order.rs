@@ -334,7 +334,7 @@ fn many(count: u32, stroke: impl Fn(u32, u32) -> Vec<Place>) -> Drawing {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+#[ignore = "long: .ci/run has it in release"]
 fn two_hundred_thousand_strokes_are_ordered_within_the_budget() {
     let noise = many(200_000, |x, y| vec![(x, y), (x + 40, y + y % 40)]);
     let settings = Order { budget: 1_000_000, ..Order::default() };
@@ -345,7 +345,7 @@ fn two_hundred_thousand_strokes_are_ordered_within_the_budget() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+#[ignore = "long: .ci/run has it in release"]
 fn all_ends_in_one_place_take_no_longer() {
     let star = many(20_000, |x, y| vec![(32_768, 32_768), (x, y), (32_768, 32_768)]);
     let ordered = exactly_meeting().apply(&star);

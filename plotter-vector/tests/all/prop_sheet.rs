@@ -155,7 +155,7 @@ proptest! {
     }
 
     #[test]
-    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+    #[ignore = "long: .ci/run has it in release"]
     fn noise_has_no_bands_either(seed: u64, density in 1..6_u32) {
         let mut ink = Bitmap::new(100, 260).unwrap();
         let mut random = seed | 1;

@@ -58,7 +58,7 @@ impl RowSource for Lines {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+#[ignore = "long: .ci/run has it in release"]
 fn memory_does_not_grow_with_the_length_of_the_sheet() -> Result<(), Box<dyn std::error::Error>> {
     if !is_alone("sheet_memory::memory_does_not_grow_with_the_length_of_the_sheet") {
         return Ok(());

@@ -106,7 +106,7 @@ fn from_an_end_behind_another_line_the_tool_goes_back_to_where_they_meet() {
 
 /// A table that has gone astray is at its limits before the line is: the tool does not leave the line there.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+#[ignore = "long: .ci/run has it in release"]
 fn at_the_limits_of_the_machine_the_tool_stays_on_the_line() {
     let (mut greatest, mut leaves) = (0.0_f64, 0);
     for seed in 0..2 {
@@ -127,7 +127,7 @@ fn at_the_limits_of_the_machine_the_tool_stays_on_the_line() {
 /// where the way meets its beginning all that was seen is settled anew, and the tool is on the lines, too,
 /// that are followed later.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+#[ignore = "long: .ci/run has it in release"]
 fn a_way_round_bare_walls_comes_back_to_its_beginning() {
     let lines = vec![
         polyline(&[(60.3, 60.2), (660.4, 60.2), (660.4, 460.7), (60.3, 460.7), (60.3, 60.2)]),
@@ -151,7 +151,7 @@ fn a_way_round_bare_walls_comes_back_to_its_beginning() {
 /// 1 px between lines is nothing under 1.5 px of blur, and no window shows where they end: no look for that
 /// goes on for ever.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+#[ignore = "long: .ci/run has it in release"]
 fn lines_that_are_one_under_the_blur_come_to_an_end() {
     let rows: Vec<_> = (0..6)
         .map(|i| 120.3 + 5.0 * f64::from(i))

@@ -46,7 +46,7 @@ fn jumps(pen_px: f64, gap_px: f64, only_connected: bool) -> (usize, usize) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+#[ignore = "long: .ci/run has it in release"]
 fn only_joined_exits_keep_it_on_its_line() {
     println!("| line, px | gap, px | jumps, published | jumps, joined exits only |");
     for (pen, gap) in [(4.0, 3.0), (4.0, 4.0), (5.0, 4.0), (5.0, 5.0), (6.0, 10.0)] {

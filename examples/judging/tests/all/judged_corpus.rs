@@ -127,7 +127,7 @@ fn assert_within(figures: &Judgement, bounds: &Bounds) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+#[ignore = "long: .ci/run has it in release"]
 fn every_picture_of_the_corpus_keeps_its_bounds() {
     let judged = judged_corpus().unwrap();
     let rows: String = judged.iter().map(|(truth, figures)| figures.row(&truth.name)).collect();
@@ -145,7 +145,7 @@ fn every_picture_of_the_corpus_keeps_its_bounds() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
+#[ignore = "long: .ci/run has it in release"]
 fn no_ink_of_lines_one_pixel_wide_lies_farther_than_was_asked() {
     for picture in all() {
         let truth = Truth::of(&picture);

@@ -9,6 +9,7 @@ use plotter_judging::corpus::{Truth, all};
 use plotter_judging::degraded::{Degraded, Drawn, Kind, Strength};
 use plotter_vector::{PxPoint, Vectorizer, svg};
 use serde_json::Value;
+use std::sync::OnceLock;
 
 /// Farthest that a corner may be off, px: half of what is asked of the median.
 const CORNER_PX: f64 = 0.75;
@@ -26,12 +27,25 @@ fn straightened(degraded: &Degraded) -> Straightened {
     auto.straightened(&degraded.file, 1, false, &SizeOptions::default()).unwrap().unwrap()
 }
 
-/// The strokes on the straightened sheet, as `trace --paper` writes them.
-fn traced(found: &Straightened) -> String {
-    let (traced, _) = vectorized(&Vectorizer::default(), found.file.clone(), 1).unwrap();
-    let mut text = String::new();
-    svg(&traced.drawing, 1.0, &mut text).unwrap();
-    text.replacen("<svg ", &format!("<svg {} ", found.paper.svg_attributes()), 1)
+/// A photograph, the sheet that is found on it, and the strokes on that as `trace --paper` writes them.
+struct Traced {
+    degraded: Degraded,
+    found: Straightened,
+    svg: String,
+}
+
+/// That of the strength that is usual: tracing takes most of the time, so it is done once for all tests.
+fn middle() -> &'static Traced {
+    static MIDDLE: OnceLock<Traced> = OnceLock::new();
+    MIDDLE.get_or_init(|| {
+        let degraded = photograph(Strength::Middle);
+        let found = straightened(&degraded);
+        let (traced, _) = vectorized(&Vectorizer::default(), found.file.clone(), 1).unwrap();
+        let mut text = String::new();
+        svg(&traced.drawing, 1.0, &mut text).unwrap();
+        let svg = text.replacen("<svg ", &format!("<svg {} ", found.paper.svg_attributes()), 1);
+        Traced { degraded, found, svg }
+    })
 }
 
 fn figures(svg: &str, truth: &str) -> Value {
@@ -52,6 +66,17 @@ fn true_corners(truth: &Truth) -> [PxPoint; 4] {
 #[test]
 fn strokes_of_a_straightened_sheet_lie_where_they_were_drawn() {
     let folder = Folder::new();
+    let Traced { degraded, svg, .. } = middle();
+    let truth = folder.write("truth.json", serde_json::to_string(&degraded.truth).unwrap());
+    let of = figures(&folder.write("traced.svg", svg), &truth);
+    let figure = |of: &Value, name: &str| of[name].as_f64().unwrap();
+    let (recall, precision) = (figure(&of, "recall_1_5_px"), figure(&of, "precision_1_5_px"));
+    println!("recall {recall:.4}, precision {precision:.4}");
+    assert!(recall > 0.98 && precision > 0.97, "{of}");
+}
+
+#[test]
+fn corners_of_a_sheet_are_found_where_they_are() {
     for strength in Strength::ALL {
         let degraded = photograph(strength);
         let found = straightened(&degraded);
@@ -59,31 +84,19 @@ fn strokes_of_a_straightened_sheet_lie_where_they_were_drawn() {
             let off_px = corner.distance(wanted);
             assert!(off_px < CORNER_PX, "{strength:?}: {corner:?} is {off_px:.2} px off");
         }
-        // Tracing takes most of the time: once, of the strength that is usual.
-        if strength != Strength::Middle {
-            continue;
-        }
-        let truth = folder.write("truth.json", serde_json::to_string(&degraded.truth).unwrap());
-        let of = figures(&folder.write("traced.svg", traced(&found)), &truth);
-        let figure = |of: &Value, name: &str| of[name].as_f64().unwrap();
-        let (recall, precision) = (figure(&of, "recall_1_5_px"), figure(&of, "precision_1_5_px"));
-        println!("{strength:?}: recall {recall:.4}, precision {precision:.4}");
-        assert!(recall > 0.98 && precision > 0.97, "{strength:?}: {of}");
     }
 }
 
 #[test]
 fn a_wrong_map_is_noticed() {
     let folder = Folder::new();
-    let degraded = photograph(Strength::Middle);
-    let found = straightened(&degraded);
+    let Traced { degraded, found, svg: text } = middle();
     let truth = folder.write("truth.json", serde_json::to_string(&degraded.truth).unwrap());
-    let text = traced(&found);
     let [[_, _, right], [_, _, down], _] = found.paper.sheet.to_picture().0;
     // Four pixels to the right and up: lines in both directions are missed by as much.
     let moved = text.replacen(&format!(" {right} "), &format!(" {} ", right + 4.0), 1);
     let moved = moved.replacen(&format!(" {down} "), &format!(" {} ", down - 4.0), 1);
-    assert_ne!(moved, text);
+    assert_ne!(moved, *text);
     let of = figures(&folder.write("moved.svg", &moved), &truth);
     assert!(of["recall_1_5_px"].as_f64().unwrap() < 0.5, "{of}");
     // Without it the sheet is taken for the picture.
