@@ -9,13 +9,13 @@ const WIDEST_PX: u32 = 64;
 /// is no wider than they are.
 pub(crate) const WIDEST_BESIDE_AREAS_PX: u32 = WIDEST_PX / 6;
 
-/// Runs of a pen's lines are between so many tenths of its width long, most of them: across lines in all
-/// directions, but not along them.
-const NEAR_TENTHS: core::ops::RangeInclusive<u64> = 6..=16;
+/// Runs across the lines of a pen are as long as it is wide, and up to so many hundredths of that, at 45
+/// degrees.
+const ACROSS_HUNDREDTHS: usize = 141;
 
-/// Fewer of all runs than so many in a hundred tell no pen. A silhouette of a horse has 35; drawings of lines
-/// of one and of two widths, lettering and brushes 43 and more, most of them 60 to 90.
-const LEAST_NEAR: u64 = 40;
+/// Fewer of all runs than so many in a hundred tell no pen. Silhouettes of animals have 16 to 25, at any size;
+/// drawings of lines, lettering, brushes, pencil and chalk 30 and more, most of them 40 to 80.
+const LEAST_ACROSS: u64 = 26;
 
 /// What is narrower, px, is a pen or so small that its width says nothing.
 const LEAST_SILHOUETTE_PX: u32 = 6;
@@ -56,14 +56,13 @@ impl Runs {
         }
     }
 
-    /// Whether so many of the runs are about as long as a pen of this width is wide that it may be one.
-    fn tell_a_pen(&self, width_px: u32) -> bool {
+    /// Whether there is a width that so many of the runs are as long as a pen's would be that it may be one.
+    fn tell_a_pen(&self) -> bool {
         let all: u64 = self.0.iter().sum();
-        let near = (0_u64..).zip(self.0).filter(|(length, _)| {
-            let width = u64::from(width_px);
-            (NEAR_TENTHS.start() * width..=NEAR_TENTHS.end() * width).contains(&(10 * length))
-        });
-        100 * near.map(|(_, n)| n).sum::<u64>() >= LEAST_NEAR * all
+        (1..=WIDEST_PX as usize).any(|width| {
+            let across = self.0.get(width..=width * ACROSS_HUNDREDTHS / 100).unwrap_or(&[]);
+            100 * across.iter().sum::<u64>() >= LEAST_ACROSS * all
+        })
     }
 
     /// The length that a third of all runs do not exceed, px; that of a longer run than any that is told
@@ -127,7 +126,7 @@ impl LineWidth {
         self.end();
         let width = self.runs.shortest_third().filter(|width| *width <= WIDEST_PX);
         if let Some(width) = width {
-            return (Some(width), width >= LEAST_SILHOUETTE_PX && !self.runs.tell_a_pen(width));
+            return (Some(width), width >= LEAST_SILHOUETTE_PX && !self.runs.tell_a_pen());
         }
         if let Some(longer) = self.runs.0.last_mut() {
             *longer = 0;

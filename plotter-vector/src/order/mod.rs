@@ -132,6 +132,16 @@ impl Order {
     /// The drawing in an order with less travel. See [`Order`] for what is kept.
     #[must_use]
     pub fn apply(&self, drawing: &Drawing) -> Drawing {
+        self.apply_over_corners(drawing, self.corner_gap_px())
+    }
+
+    /// Within what ends are joined at any angle, px.
+    fn corner_gap_px(&self) -> f64 {
+        if self.bridges_corners { self.merge_gap_px } else { 0.0 }
+    }
+
+    /// The same, with the ends that are left joined at any angle within `corner_gap_px`.
+    pub(crate) fn apply_over_corners(&self, drawing: &Drawing, corner_gap_px: f64) -> Drawing {
         if self.effort == OrderEffort::None {
             return drawing.clone();
         }
@@ -143,7 +153,7 @@ impl Order {
             None => Vec::new(),
         };
         mark_letters(&mut strokes, &blocks);
-        let (legs, trails) = self.plan(&strokes, &blocks, None);
+        let (legs, trails) = self.plan(&strokes, &blocks, None, corner_gap_px);
         rebuild(drawing, &legs, &trails)
     }
 
@@ -154,15 +164,13 @@ impl Order {
         strokes: &'a [Stroke<'a>],
         blocks: &[TextBlock],
         given_px: Option<f64>,
+        corner_gap_px: f64,
     ) -> (Legs<'a>, Vec<Trail>) {
         if !strokes.iter().all(is_within) {
             return as_given(strokes, &[], self.across_pens);
         }
-        let joining = trails::Joining {
-            gap_px: self.merge_gap_px,
-            one_stroke: self.one_stroke,
-            at_corners: self.bridges_corners,
-        };
+        let joining =
+            trails::Joining { gap_px: self.merge_gap_px, one_stroke: self.one_stroke, corner_gap_px };
         let (legs, joined) = trails::trails(strokes, &joining);
         let units = Units::new(&legs, joined, blocks);
         if self.effort == OrderEffort::Join {
@@ -402,7 +410,7 @@ fn as_given<'a>(
 mod tests {
     use super::*;
 
-    const JOINING: trails::Joining = trails::Joining { gap_px: 0.5, one_stroke: true, at_corners: false };
+    const JOINING: trails::Joining = trails::Joining { gap_px: 0.5, one_stroke: true, corner_gap_px: 0.0 };
 
     fn line(from: f64, to: f64) -> [PxPoint; 2] {
         [PxPoint::new(from, 0.0), PxPoint::new(to, 0.0)]

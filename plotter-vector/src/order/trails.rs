@@ -43,20 +43,24 @@ pub(crate) struct Joining {
     pub(crate) gap_px: f64,
     /// And ends in exactly one place, whatever the angle.
     pub(crate) one_stroke: bool,
-    /// And then what is left within the gap, whatever the angle.
-    pub(crate) at_corners: bool,
+    /// And then what is left within so much, whatever the angle; 0 for none.
+    pub(crate) corner_gap_px: f64,
 }
 
 /// Joins strokes end to end. Trails come in the order of their first strokes.
 pub(crate) fn trails<'a>(strokes: &'a [Stroke<'a>], joining: &Joining) -> (Legs<'a>, Vec<Trail>) {
     let mut meeting = Meeting::new(strokes, joining.one_stroke);
     let gap_px = if joining.gap_px > 0.0 { joining.gap_px } else { 0.0 };
-    let near = meeting.near_nodes(gap_px);
+    let mut near = meeting.near_nodes(gap_px);
     meeting.go_on_straight(&near, gap_px);
     if joining.one_stroke {
         meeting.pair_the_rest();
-        if joining.at_corners && gap_px > 0.0 {
-            meeting.bridge_the_rest(&near, gap_px);
+        let corner_gap_px = joining.corner_gap_px;
+        if corner_gap_px > 0.0 {
+            if corner_gap_px != gap_px {
+                near = meeting.near_nodes(corner_gap_px);
+            }
+            meeting.bridge_the_rest(&near, corner_gap_px);
         }
         drop(near);
         meeting.splice();
@@ -509,7 +513,7 @@ mod tests {
     use crate::order::plan::{Leg, strokes_of};
     use crate::stroke::Drawing;
 
-    const TIGHT: Joining = Joining { gap_px: 0.5, one_stroke: true, at_corners: false };
+    const TIGHT: Joining = Joining { gap_px: 0.5, one_stroke: true, corner_gap_px: 0.0 };
 
     fn drawing(strokes: &[&[(f64, f64)]]) -> Drawing {
         let mut drawing = Drawing::new(100, 100);
@@ -522,7 +526,7 @@ mod tests {
     /// Strokes of each trail, one more than their numbers, negative where drawn backwards; `o` for a ring.
     fn joined(drawing: &Drawing, gap_px: f64, one_stroke: bool) -> Vec<String> {
         let strokes = strokes_of(drawing);
-        let (legs, trails) = trails(&strokes, &Joining { gap_px, one_stroke, at_corners: false });
+        let (legs, trails) = trails(&strokes, &Joining { gap_px, one_stroke, corner_gap_px: 0.0 });
         let name = |trail: Trail| {
             let name = |leg: Leg| format!("{}{}", if leg.reversed { "-" } else { "" }, leg.stroke + 1);
             let names: Vec<String> = trail.legs(&legs.all).map(name).collect();
@@ -644,7 +648,7 @@ mod tests {
         ]);
         let strokes = strokes_of(&square);
         assert_eq!(trails(&strokes, &TIGHT).1.len(), 4);
-        let (legs, trails) = trails(&strokes, &Joining { at_corners: true, ..TIGHT });
+        let (legs, trails) = trails(&strokes, &Joining { corner_gap_px: 0.5, ..TIGHT });
         assert_eq!((trails.len(), trails[0].closed, legs.vertices(trails[0]).len()), (1, true, 9));
     }
 

@@ -58,6 +58,10 @@ const THINNER: [f64; 3] = [0.75, 0.5, 0.25];
 const LEAST_PX: f64 = 1.5;
 const LEAST_OF_HALF: f64 = 0.5;
 
+/// Ink is hardly worth a stroke that is shorter than its pen is wide if no farther from what is covered than
+/// this part of half the pen's width: what sticks out farther a draughtsman sees.
+const HAIR_OF_HALF: f64 = 0.75;
+
 /// A way around so many sites is one around a dot.
 const DOT_SITES: usize = 12;
 
@@ -112,7 +116,7 @@ impl BareInk<'_> {
                     self.cover(ink, first_row, bare, &mut found);
                 }
                 self.join(ink, first_row, &mut found);
-                found.retain(|stroke| self.spots || !self.is_hair(stroke));
+                found.retain(|stroke| self.spots || !self.is_hair(stroke, &square));
                 strokes.append(&mut found);
             }
         }
@@ -178,12 +182,15 @@ impl BareInk<'_> {
         meets.then_some(turns)
     }
 
-    /// Whether a stroke is shorter than the pen that draws it is wide, and leads over ink that is covered:
-    /// lifting the pen for it costs more than what it covers beside its way is worth.
-    fn is_hair(&self, stroke: &Curve) -> bool {
+    /// Whether a stroke is shorter than the pen that draws it is wide, and none of these bare pixels near it
+    /// lies far from what is covered: lifting the pen costs more than that ink is worth.
+    fn is_hair(&self, stroke: &Curve, bare: &[Pixel]) -> bool {
         let half_px = stroke.vertices.first().map_or(0.0, |at| self.drawn.slack_px(*at));
-        let is_covered = |at: &PxPoint| self.drawn.error_px(*at, &mut 0) <= 0.0;
-        stroke.length_px() < 2.0 * half_px && stroke.vertices.iter().all(is_covered)
+        let is_near = |at: &&Pixel| {
+            stroke.vertices.iter().any(|vertex| vertex.distance((**at).into()) <= 2.0 * half_px)
+        };
+        let covered = |at: &Pixel| self.drawn.error_px((*at).into(), &mut 0) <= HAIR_OF_HALF * half_px;
+        stroke.length_px() < 2.0 * half_px && bare.iter().filter(is_near).all(covered)
     }
 
     /// Whether pixels are a spot that is worth no stroke of its own: farther off than allowed by no more than

@@ -332,13 +332,8 @@ impl Vectorizer {
             drawing = without_short(drawing, self.min_stroke_px);
             errors = None;
         }
-        let order = if pen_px > 1 {
-            let merge_gap_px = self.order.merge_gap_px.max(pen_px.into());
-            Order { merge_gap_px, bridges_corners: true, ..self.order }
-        } else {
-            self.order
-        };
-        (order.apply(&drawing), errors)
+        let corner_gap_px = if pen_px > 1 { f64::from(pen_px) } else { 0.0 };
+        (self.order.apply_over_corners(&drawing, corner_gap_px), errors)
     }
 
     /// Whether strokes are added for what is bare.

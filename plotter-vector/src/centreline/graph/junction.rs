@@ -464,13 +464,13 @@ impl Lines<'_> {
             Some(heart.plan(arms, Meet::Apart)),
             near.as_ref().map(|near| heart.plan(near, Meet::WherePenWas)),
             near.as_ref().map(|near| heart.plan(near, Meet::Apart)),
+            self.along_skeleton(group, arms, heart, found),
         ];
         let others = others.into_iter().flatten().map(|ways| (ways, better_than as fn(f64) -> f64));
         // Where all lines show their course, they go on as they come.
         let are_sure = arms.iter().all(is_sure);
         let below = if are_sure { plainly_better_than } else { better_than };
         let curves = pairings(arms.len()).iter().map(|pairs| heart.curves(arms, pairs));
-        let curves = self.along_skeleton(group, arms, heart, found).into_iter().chain(curves);
         let curves = curves.map(|ways| (ways, below as fn(f64) -> f64));
         for (ways, below) in others.chain(curves) {
             if best.0 <= GOOD_PX2 {

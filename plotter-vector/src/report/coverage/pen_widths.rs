@@ -22,7 +22,7 @@ pub(crate) const JUMP_PX: f64 = 1.25;
 /// A stroke that is shorter than so many halves of its width is no wider line but a dot, or lines of the pen
 /// that run into one; it is taken for no wider than so many pens.
 const SHORT_HALVES: f64 = 16.0;
-const WIDEST_SHORT: f64 = 1.25;
+const WIDEST_SHORT: f64 = 1.2;
 
 /// Two lines that run into one are no wider than so many pens, px a px: twice one, and half of one more where
 /// the paper between them has run full. What is wider is a line of another pen, or a wedge.
