@@ -326,7 +326,7 @@ impl Fronts {
 
     /// One step: by turns without and with those across corners, which is nearly as far in all directions.
     fn step(&mut self, step: u32) {
-        let beside = if step % 2 == 0 { 4 } else { 8 };
+        let beside = if step.is_multiple_of(2) { 4 } else { 8 };
         let mut new = Vec::new();
         for index in core::mem::take(&mut self.last) {
             for next in self.around_of(index).into_iter().take(beside).flatten() {
@@ -460,11 +460,11 @@ impl Front {
         #[expect(clippy::cast_precision_loss, reason = "a few hundred steps")]
         let count = steps.len() as f64;
         let mut mean = PxVec::new(0.0, 0.0);
-        steps.iter().for_each(|(at, _)| mean = mean + (*at - PxPoint::default()) / count);
+        steps.iter().for_each(|(at, _)| mean += (*at - PxPoint::default()) / count);
         let (mut along, mut squares, mut pixels) = (PxVec::new(0.0, 0.0), 0.0, 0.0);
         let mut from_middle = 0.5 - 0.5 * count;
         for (at, size) in &steps {
-            along = along + (*at - PxPoint::default()) * from_middle;
+            along += (*at - PxPoint::default()) * from_middle;
             squares += from_middle * from_middle;
             #[expect(clippy::cast_precision_loss, reason = "a few hundred pixels")]
             let size = *size as f64;

@@ -277,7 +277,7 @@ mod tests {
             let opening = Opening::of_drawing(max_line_px, 3);
             let context = opening.rows_of_context();
             let whole = opening.split_of(&ink);
-            prop_assert!((&whole.thick).clone().united(&whole.thin) == ink);
+            prop_assert!(whole.thick.clone().united(&whole.thin) == ink);
             let end = start + count;
             let (from, to) = (start.saturating_sub(context), (end + context).min(ink.height()));
             let band = opening.split_of(&ink.band(from..to));
