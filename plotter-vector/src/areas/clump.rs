@@ -12,8 +12,8 @@
 //! ```
 
 use super::disc::index;
-use crate::disjoint_sets::DisjointSets;
-use crate::picture::runs::{ink_runs, set_run};
+use crate::picture::joined_runs::JoinedRuns;
+use crate::picture::runs::set_run;
 use crate::picture::{Bitmap, Pixel};
 use crate::stroke::{PxPoint, PxVec};
 use core::ops::Range;
@@ -24,24 +24,30 @@ const FIRST_STEP: usize = 2;
 /// Fewest steps in which a line shows where it leads, and that it is as wide all along.
 const FEWEST_STEPS: usize = 4;
 
-/// In that many of its steps, by which it is told, a line's front has so many times as many pixels at most, and
-/// so many more.
+/// Most times, and pixels more, that a line's front is as wide in one place as in another: one pixel for each
+/// of its edges, and a quarter, for a step is not quite as far in all directions. A rest of an area gets wider
+/// or narrower by more.
 const STEADY_TIMES: f64 = 1.25;
-const STEADY_MORE: f64 = 2.0;
+const STEADY_PX: f64 = 2.0;
 
-/// A piece of a line's front that is a smaller part of it is a ragged edge.
+/// A piece of a line's front that is a smaller part of it than one in so many is a ragged edge, and the line
+/// does not part there.
 const RAGGED: usize = 4;
 
-/// A line's pen covers so much beside half its width, px: what the raster and its measured width leave open.
+/// A line's pen covers so much beside half its width, px: half a pixel for the raster, and a quarter for its
+/// width, which is a mean over a few steps.
 const RASTER_PX: f64 = 0.75;
 
-/// Part of a clump that the pens of its lines need not explain: corners that blur has filled.
+/// Part of a clump that the pens of its lines need not explain, for blur rounds the corners between them. Of
+/// the dot of a joint, as small as is looked at, two lines leave a ninth bare, and of larger ones more.
 const UNEXPLAINED: f64 = 0.08;
 
-/// Least cosine of the angle between two lines that are one: 15 degrees.
+/// Least cosine of the angle between two lines that are one: 15 degrees, for of a thin line the eight pixels by
+/// which it is told may lie a pixel aside at either end.
 const THROUGH_COS: f64 = 0.966;
 
-/// One pen makes lines whose widths differ by no more than so many times, and px.
+/// One pen makes lines whose widths differ by no more than so many times, and px: a pixel and a half for the
+/// raster at both edges, and on wide lines a third for what a pen's pressure does.
 const SAME_TIMES: f64 = 1.3;
 const SAME_PX: f64 = 1.5;
 
@@ -65,7 +71,9 @@ pub(super) struct Beside {
 /// A line that comes to a clump.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LineIn {
-    /// A place on its middle, before the clump.
+    /// The clump's upper left pixel.
+    origin: Pixel,
+    /// A place on its middle, before the clump, from there.
     root: PxPoint,
     /// The unit vector along it, into the clump.
     heading: PxVec,
@@ -74,60 +82,38 @@ pub(super) struct LineIn {
 
 /// The compact pieces of a picture, up to `most_px` wide and high, in the order of their first rows.
 pub(super) fn clumps(picture: &Bitmap, most_px: u32) -> Vec<Clump> {
-    let mut sets = DisjointSets::new(0);
-    let mut runs: Vec<(u32, Range<u32>)> = Vec::new();
-    let mut above = 0..0;
-    for y in 0..picture.height() {
-        let first = runs.len();
-        let mut next_above = above.start;
-        for run in ink_runs(picture.row(y)) {
-            let own = sets.push();
-            while let Some((_, other)) = runs.get(next_above).filter(|_| next_above < above.end) {
-                if other.start > run.end {
-                    break;
-                }
-                if other.end >= run.start {
-                    sets.join_to_lower(next_above, own);
-                }
-                if other.end > run.end {
-                    break;
-                }
-                next_above += 1;
-            }
-            runs.push((y, run));
+    let (runs, parts) = JoinedRuns::of(picture).parts();
+    let mut found: Vec<Clump> = Vec::with_capacity(parts);
+    for (y, run, part) in runs {
+        if part == found.len() {
+            found.push(Clump { runs: Vec::new(), columns: run.clone(), rows: y..y });
         }
-        above = first..runs.len();
-    }
-    // The extent of each piece stands at its root.
-    let mut extents: Vec<Option<(Range<u32>, Range<u32>)>> = vec![None; runs.len()];
-    for (index, (y, run)) in runs.iter().enumerate() {
-        if let Some(extent) = extents.get_mut(sets.root(index)) {
-            let (columns, rows) = extent.get_or_insert_with(|| (run.clone(), *y..*y));
-            *columns = columns.start.min(run.start)..columns.end.max(run.end);
-            rows.end = y + 1;
-        }
-    }
-    let mut numbers = vec![None; runs.len()];
-    let mut found: Vec<Clump> = Vec::new();
-    for (index, (y, run)) in runs.into_iter().enumerate() {
-        let root = sets.root(index);
-        let Some((columns, rows)) = extents.get(root).and_then(Option::as_ref) else { continue };
-        if columns.end - columns.start > most_px || rows.end - rows.start > most_px {
-            continue;
-        }
-        let Some(number) = numbers.get_mut(root) else { continue };
-        let number = *number.get_or_insert_with(|| {
-            found.push(Clump { runs: Vec::new(), columns: columns.clone(), rows: rows.clone() });
-            found.len() - 1
-        });
-        if let Some(clump) = found.get_mut(number) {
+        let Some(clump) = found.get_mut(part) else { continue };
+        clump.columns = clump.columns.start.min(run.start)..clump.columns.end.max(run.end);
+        clump.rows.end = y + 1;
+        // Of a large area not even the runs are kept.
+        if clump.is_within(most_px) {
             clump.runs.push((y, run));
+        } else {
+            clump.runs = Vec::new();
         }
     }
+    found.retain(|clump| clump.is_within(most_px));
     found
 }
 
 impl Clump {
+    /// Whether it is no wider and no higher than this.
+    fn is_within(&self, most_px: u32) -> bool {
+        self.columns.end - self.columns.start <= most_px && self.rows.end - self.rows.start <= most_px
+    }
+
+    /// The upper left pixel of the box around it: places are told from there, so that they are rounded alike
+    /// in every band.
+    const fn origin(&self) -> Pixel {
+        Pixel::new(self.columns.start, self.rows.start)
+    }
+
     /// Makes its pixels ink or paper.
     pub(super) fn set(&self, picture: &mut Bitmap, ink: bool) {
         self.runs.iter().for_each(|(y, run)| set_run(picture.row_mut(*y), run.clone(), ink));
@@ -145,7 +131,7 @@ impl Clump {
         let long = fronts.lines.iter().filter(|front| front.steps.len() >= FEWEST_STEPS);
         Beside {
             widest_px: long.map(Front::width_px).max(),
-            lines: fronts.lines.iter().filter_map(Front::line).collect(),
+            lines: fronts.lines.iter().filter_map(|front| front.line(fronts.origin)).collect(),
         }
     }
 
@@ -154,7 +140,7 @@ impl Clump {
         let (mut all, mut bare) = (0.0, 0.0);
         for at in self.pixels() {
             all += 1.0;
-            if !lines.iter().any(|line| line.covers(at.into())) {
+            if !lines.iter().any(|line| line.covers(at)) {
                 bare += 1.0;
             }
         }
@@ -163,8 +149,9 @@ impl Clump {
 }
 
 impl LineIn {
-    /// Whether its pen, which goes straight on, covers a place.
-    fn covers(&self, at: PxPoint) -> bool {
+    /// Whether its pen, which goes straight on, covers a pixel's middle.
+    fn covers(&self, at: Pixel) -> bool {
+        let at = from_origin(at, self.origin);
         let way = at - self.root;
         way.dot(self.heading) >= -1.0 && self.off_px(at) <= 0.5 * self.width_px + RASTER_PX
     }
@@ -183,9 +170,36 @@ impl LineIn {
             && off_px <= (0.5 * thin_px).max(1.0)
             && wide_px <= (SAME_TIMES * thin_px).max(thin_px + SAME_PX)
             && (other.root - self.root).dot(self.heading) > 0.0
-            && is_ink_between(self.root, other.root, ink);
+            && self.is_ink_to(other.root, ink);
         is_one.then_some(cos)
     }
+
+    /// Whether all places on the straight way to another lie in ink.
+    fn is_ink_to(&self, to: PxPoint, ink: &Bitmap) -> bool {
+        let way = to - self.root;
+        let steps = libm::ceil(2.0 * way.length()).max(1.0);
+        let mut step = 0.0;
+        while step <= steps {
+            let at = self.root + way * (step / steps);
+            if !pixel_at(at, self.origin).is_some_and(|at| ink.get(at)) {
+                return false;
+            }
+            step += 1.0;
+        }
+        true
+    }
+}
+
+/// The middle of a pixel as seen from an origin.
+fn from_origin(at: Pixel, origin: Pixel) -> PxPoint {
+    PxPoint::new(0.5, 0.5) + (at - origin)
+}
+
+/// The pixel in which a place lies that is seen from an origin; none left of the picture or above it.
+fn pixel_at(at: PxPoint, origin: Pixel) -> Option<Pixel> {
+    #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
+    let (x, y) = (libm::floor(at.x) as i32, libm::floor(at.y) as i32);
+    Some(Pixel::new(origin.x.checked_add_signed(x)?, origin.y.checked_add_signed(y)?))
 }
 
 /// Which of the lines go on in each other.
@@ -218,38 +232,18 @@ pub(super) fn draw_between([one, other]: [&LineIn; 2], ink: &Bitmap, picture: &m
     let half_px = 0.25 * (one.width_px + other.width_px);
     let (from, way) = (one.root, other.root - one.root);
     let squared = way.length_squared().max(f64::MIN_POSITIVE);
-    let range = |a: f64, b: f64| whole(a.min(b) - half_px)..whole(a.max(b) + half_px).saturating_add(1);
-    let columns = range(from.x, other.root.x);
-    for y in range(from.y, other.root.y) {
-        for x in columns.clone() {
-            let at = Pixel::new(x, y);
-            let to = PxPoint::from(at) - from;
-            let part = to.dot(way) / squared;
-            if (0.0..=1.0).contains(&part) && (to - way * part).length() <= half_px && ink.get(at) {
-                picture.set(at, true);
-            }
+    let least = PxPoint::new(from.x.min(other.root.x) - half_px, from.y.min(other.root.y) - half_px);
+    let most = PxPoint::new(from.x.max(other.root.x) + half_px, from.y.max(other.root.y) + half_px);
+    let first = pixel_at(least, one.origin).unwrap_or_default();
+    let Some(last) = pixel_at(most, one.origin) else { return };
+    for (x, y) in (first.y..=last.y).flat_map(|y| (first.x..=last.x).map(move |x| (x, y))) {
+        let at = Pixel::new(x, y);
+        let to = from_origin(at, one.origin) - from;
+        let part = to.dot(way) / squared;
+        if (0.0..=1.0).contains(&part) && (to - way * part).length() <= half_px && ink.get(at) {
+            picture.set(at, true);
         }
     }
-}
-
-/// Whether all places on the straight way between two lie in ink.
-fn is_ink_between(from: PxPoint, to: PxPoint, ink: &Bitmap) -> bool {
-    let steps = libm::ceil(2.0 * from.distance(to)).max(1.0);
-    let mut step = 0.0;
-    while step <= steps {
-        let at = from + (to - from) * (step / steps);
-        if at.x < 0.0 || at.y < 0.0 || !ink.get(Pixel::new(whole(at.x), whole(at.y))) {
-            return false;
-        }
-        step += 1.0;
-    }
-    true
-}
-
-/// The pixel that a coordinate lies in, 0 for what lies before it.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
-fn whole(v: f64) -> u32 {
-    v.max(0.0) as u32
 }
 
 /// What a pixel around a clump is.
@@ -275,8 +269,9 @@ struct Front {
 
 /// The ink around a clump, step by step away from it.
 struct Fronts {
-    left: u32,
-    top: u32,
+    /// The clump's upper left pixel, and from there that of the cells.
+    origin: Pixel,
+    corner: PxVec,
     width: usize,
     cells: Vec<Cell>,
     last: Vec<usize>,
@@ -294,7 +289,9 @@ impl Fronts {
             let cell = |x| if ink.get(Pixel::new(x, y)) { Cell::Ink } else { Cell::Paper };
             cells.extend((left..right).map(cell));
         }
-        let mut fronts = Self { left, top, width, cells, last: Vec::new(), lines: Vec::new() };
+        let origin = clump.origin();
+        let corner = Pixel::new(left, top) - origin;
+        let mut fronts = Self { origin, corner, width, cells, last: Vec::new(), lines: Vec::new() };
         for at in clump.pixels() {
             let index = (at.y - top) as usize * width + (at.x - left) as usize;
             if let Some(cell) = fronts.cells.get_mut(index) {
@@ -422,19 +419,24 @@ impl Fronts {
         }
         #[expect(clippy::cast_precision_loss, reason = "sums over a few thousand pixels")]
         let (x, y, count) = (x as f64, y as f64, group.len().max(1) as f64);
-        let (left, top) = (f64::from(self.left), f64::from(self.top));
-        (PxPoint::new(left + x / count + 0.5, top + y / count + 0.5), group.len())
+        (PxPoint::new(x / count + 0.5, y / count + 0.5) + self.corner, group.len())
     }
 }
 
-/// Whether most fronts of a line are as wide as each other.
+/// How many pixels each two steps in a row reach: of a slanted line every other step reaches twice as many.
+fn in_pairs(steps: &[(PxPoint, usize)]) -> Vec<usize> {
+    steps.windows(2).map(|pair| pair.iter().map(|(_, count)| count).sum()).collect()
+}
+
+/// Whether a line is as wide in most places as in others.
 fn is_steady(steps: &[(PxPoint, usize)]) -> bool {
-    let mut counts: Vec<u32> = steps.iter().map(|(_, count)| index(*count)).collect();
+    let mut counts = in_pairs(steps);
     counts.sort_unstable();
     // One in eight at either side may be where something ends or joins.
     let rest = counts.len() / 8;
-    match (counts.get(rest), counts.get(counts.len() - 1 - rest)) {
-        (Some(least), Some(most)) => f64::from(*most) <= STEADY_TIMES * f64::from(*least) + STEADY_MORE,
+    let at = |rank: usize| counts.get(rank).map(|count| f64::from(index(*count)));
+    match (at(rest), at(counts.len().saturating_sub(1 + rest))) {
+        (Some(least), Some(most)) => most <= STEADY_TIMES * least + 2.0 * STEADY_PX,
         _ => false,
     }
 }
@@ -442,13 +444,13 @@ fn is_steady(steps: &[(PxPoint, usize)]) -> bool {
 impl Front {
     /// Its width in most places, px.
     fn width_px(&self) -> usize {
-        let mut counts: Vec<usize> = self.steps.iter().map(|(_, count)| *count).collect();
+        let mut counts = in_pairs(&self.steps);
         let middle = counts.len() / 2;
-        if counts.is_empty() { 0 } else { *counts.select_nth_unstable(middle).1 }
+        if counts.is_empty() { 0 } else { counts.select_nth_unstable(middle).1.div_ceil(2) }
     }
 
     /// The line, from where the clump's own form shows no more; none of a stub.
-    fn line(&self) -> Option<LineIn> {
+    fn line(&self, origin: Pixel) -> Option<LineIn> {
         let width = self.width_px();
         // Half a width from the clump the front lies across the line; two widths tell its direction.
         let first = width / 2 + 1;
@@ -474,6 +476,7 @@ impl Front {
         let step = along / squares;
         let step_px = step.length();
         (step_px > 0.0).then(|| LineIn {
+            origin,
             root: PxPoint::default() + mean - step * (0.5 * count - 0.5),
             heading: step * (-1.0 / step_px),
             width_px: pixels / (count * step_px),

@@ -217,6 +217,26 @@ mod tests {
     }
 
     #[test]
+    fn where_wide_lines_meet_is_no_area_in_whatever_direction_they_run() {
+        // A T, a cross and a Y of lines of 16 px, of whose ends none is near.
+        let meetings: [&[f64]; 3] = [&[0.0, 180.0, 90.0], &[0.0, 180.0, 90.0, 270.0], &[0.0, 120.0, 240.0]];
+        for (arms, turn) in meetings.iter().flat_map(|arms| (0..24).map(move |turn| (arms, turn))) {
+            let turn_deg = 3.75 * f64::from(turn);
+            let is_ink = |x: f64, y: f64| {
+                arms.iter().any(|arm| {
+                    let (sin, cos) = libm::sincos((arm + turn_deg).to_radians());
+                    let (x, y) = (x - 110.3, y - 110.6);
+                    let along = x * cos + y * sin;
+                    (0.0..=100.0).contains(&along) && (y * cos - x * sin).abs() <= 8.0
+                })
+            };
+            let ink = picture(220, 220, is_ink);
+            let areas = Opening::of_drawing(18, 3).split_of(&ink).thick;
+            assert_eq!(areas.count(), 0, "{arms:?} turned by {turn_deg}");
+        }
+    }
+
+    #[test]
     fn a_line_goes_on_through_a_mark_and_one_that_ends_at_it_does_not() {
         let line = |_: f64, y: f64| (y - 40.5).abs() <= 1.5;
         let stem = |x: f64, y: f64| (x - 60.0).abs() <= 1.5 && y < 40.0;

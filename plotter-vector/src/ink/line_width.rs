@@ -65,17 +65,34 @@ impl Runs {
         })
     }
 
-    /// The length that a third of all runs do not exceed, px; that of a longer run than any that is told
+    /// The length that one in `of` of all runs does not exceed, px; that of a longer run than any that is told
     /// is 65.
-    fn shortest_third(&self) -> Option<u32> {
+    fn shortest(&self, of: u64) -> Option<u32> {
         let total: u64 = self.0.iter().sum();
         let mut below = 0;
-        let third = self.0.iter().position(|n| {
+        let rank = self.0.iter().position(|n| {
             below += n;
-            below > 0 && 3 * below >= total
+            below > 0 && of * below >= total
         })?;
-        u32::try_from(third).ok()
+        u32::try_from(rank).ok()
     }
+
+    /// The width of the pen.
+    fn shortest_third(&self) -> Option<u32> {
+        self.shortest(3)
+    }
+}
+
+/// What the runs of ink tell of its lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Widths {
+    /// Width of the pen, px, as of [`LineWidth::finish_beside_areas`].
+    pub(crate) pen_px: Option<u32>,
+    /// That of the thinnest lines, unless they are hardly any, px: a tenth of all runs is no longer.
+    pub(crate) thinnest_px: Option<u32>,
+    /// Whether no pen is likely to have drawn the ink, for hardly any of it is as wide: then it is the
+    /// silhouette of something.
+    pub(crate) is_silhouette: bool,
 }
 
 impl LineWidth {
@@ -117,21 +134,23 @@ impl LineWidth {
     /// px; `None` without any of that.
     #[must_use]
     pub fn finish_beside_areas(self) -> Option<u32> {
-        self.finish_or_silhouette().0
+        self.widths().pen_px
     }
 
-    /// The same, and whether no pen is likely to have drawn the ink, for hardly any of it is as wide: then it
-    /// is the silhouette of something.
-    pub(crate) fn finish_or_silhouette(mut self) -> (Option<u32>, bool) {
+    /// The same, and what else the runs tell.
+    pub(crate) fn widths(mut self) -> Widths {
         self.end();
         let width = self.runs.shortest_third().filter(|width| *width <= WIDEST_PX);
-        if let Some(width) = width {
-            return (Some(width), width >= LEAST_SILHOUETTE_PX && !self.runs.tell_a_pen());
-        }
-        if let Some(longer) = self.runs.0.last_mut() {
+        let is_silhouette =
+            width.is_some_and(|width| width >= LEAST_SILHOUETTE_PX && !self.runs.tell_a_pen());
+        if width.is_none()
+            && let Some(longer) = self.runs.0.last_mut()
+        {
             *longer = 0;
         }
-        (self.runs.shortest_third().map(|width| width.min(WIDEST_BESIDE_AREAS_PX)), false)
+        let beside = || self.runs.shortest_third().map(|width| width.min(WIDEST_BESIDE_AREAS_PX));
+        let pen_px = width.or_else(beside);
+        Widths { pen_px, thinnest_px: self.runs.shortest(10).min(pen_px), is_silhouette }
     }
 
     /// One row of paper settles the last row, another ends its runs.

@@ -1,9 +1,7 @@
 //! [`MarkSizes`]: how large the small marks of ink are, and whether its pixels lie as if thrown at random.
 
-use crate::disjoint_sets::DisjointSets;
 use crate::picture::Bitmap;
-use crate::picture::runs::ink_runs;
-use core::ops::Range;
+use crate::picture::joined_runs::JoinedRuns;
 
 /// Runs that are looked at, from the top: 44 bytes each are kept. So many are 200,000 marks at least, which
 /// tell as much as all.
@@ -22,11 +20,7 @@ const LIKE_CHANCE: core::ops::RangeInclusive<f64> = 0.75..=1.3;
 #[derive(Clone, Debug)]
 pub(crate) struct MarkSizes {
     width: u32,
-    rows: u32,
-    sets: DisjointSets,
-    /// Of each run its row and columns.
-    runs: Vec<(u32, Range<u32>)>,
-    above: Range<usize>,
+    runs: JoinedRuns,
     words_above: Vec<u64>,
     ink_pixels: u64,
     /// Neighbours in rows, and in columns.
@@ -48,16 +42,7 @@ pub(crate) struct SmallMarks {
 
 impl MarkSizes {
     pub(crate) fn new(width: u32) -> Self {
-        Self {
-            width,
-            rows: 0,
-            sets: DisjointSets::new(0),
-            runs: Vec::new(),
-            above: 0..0,
-            words_above: Vec::new(),
-            ink_pixels: 0,
-            pairs: [0; 2],
-        }
+        Self { width, runs: JoinedRuns::new(), words_above: Vec::new(), ink_pixels: 0, pairs: [0; 2] }
     }
 
     pub(crate) fn of(ink: &Bitmap) -> Self {
@@ -68,50 +53,32 @@ impl MarkSizes {
 
     /// The next row.
     pub(crate) fn push(&mut self, words: &[u64]) {
-        if self.runs.len() >= MOST_RUNS {
+        if self.runs.runs().len() >= MOST_RUNS {
             return;
         }
-        let first = self.runs.len();
-        let mut from = self.above.start;
-        for run in ink_runs(words) {
-            let own = self.sets.push();
-            // Over a corner, too: a run that ends where this one begins touches it.
-            while let Some((_, upper)) = self.runs.get(from).filter(|_| from < self.above.end) {
-                if upper.start > run.end {
-                    break;
-                }
-                if upper.end >= run.start {
-                    self.sets.join_to_lower(from, own);
-                }
-                if upper.end > run.end {
-                    break;
-                }
-                from += 1;
-            }
+        self.runs.push(words);
+        for (_, run) in self.runs.last_row() {
             let pixels = u64::from(run.end - run.start);
             self.ink_pixels += pixels;
             self.pairs[0] += pixels - 1;
-            self.runs.push((self.rows, run));
         }
         let below =
             words.iter().zip(&self.words_above).map(|(one, other)| u64::from((one & other).count_ones()));
         self.pairs[1] += below.sum::<u64>();
         self.words_above.clear();
         self.words_above.extend_from_slice(words);
-        self.above = first..self.runs.len();
-        self.rows += 1;
     }
 
     /// Those whose box is smaller than `within_px` both ways, and which have `least_px` pixels or more.
     #[expect(clippy::cast_precision_loss, reason = "a picture's pixels")]
-    pub(crate) fn finish(mut self, within_px: u32, least_px: u32) -> SmallMarks {
+    pub(crate) fn finish(self, within_px: u32, least_px: u32) -> SmallMarks {
         /// Pixels, and the box: left, right, top, bottom.
         type Mark = (u64, [u32; 4]);
-        let mut marks: Vec<Mark> = vec![(0, [u32::MAX, 0, u32::MAX, 0]); self.runs.len()];
-        for (index, (y, run)) in self.runs.iter().enumerate() {
-            let Some((pixels, [left, right, top, bottom])) = marks.get_mut(self.sets.root(index)) else {
-                continue;
-            };
+        let rows = self.runs.rows();
+        let (runs, parts) = self.runs.parts();
+        let mut marks: Vec<Mark> = vec![(0, [u32::MAX, 0, u32::MAX, 0]); parts];
+        for (y, run, part) in &runs {
+            let Some((pixels, [left, right, top, bottom])) = marks.get_mut(*part) else { continue };
             *pixels += u64::from(run.end - run.start);
             (*left, *right) = ((*left).min(run.start), (*right).max(run.end));
             (*top, *bottom) = ((*top).min(*y), (*bottom).max(*y + 1));
@@ -120,7 +87,7 @@ impl MarkSizes {
             *pixels >= u64::from(least_px.max(1)) && right - left < within_px && bottom - top < within_px
         };
         let (mut number, mut least, mut sum, mut squares) = (0_usize, 0_usize, 0.0, 0.0);
-        for (pixels, _) in marks.iter().filter(|(pixels, _)| *pixels > 0).filter(is_small) {
+        for (pixels, _) in marks.iter().filter(is_small) {
             let size = libm::log(*pixels as f64);
             number += 1;
             least += usize::from(*pixels <= 2);
@@ -129,7 +96,7 @@ impl MarkSizes {
         let of = number.max(1) as f64;
         let variance = (squares / of - (sum / of) * (sum / of)).max(0.0);
         let ink = self.ink_pixels as f64;
-        let by_chance = ink * ink / (f64::from(self.width) * f64::from(self.rows)).max(1.0);
+        let by_chance = ink * ink / (f64::from(self.width) * f64::from(rows)).max(1.0);
         let as_thrown = by_chance >= LEAST_PAIRS
             && self.pairs.iter().all(|pairs| LIKE_CHANCE.contains(&(*pairs as f64 / by_chance)));
         SmallMarks { marks: number, spread: libm::sqrt(variance), least_part: least as f64 / of, as_thrown }

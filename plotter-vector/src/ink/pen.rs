@@ -1,7 +1,7 @@
 //! [`Pen`]: what the ink of a picture says of the pen that drew it.
 
 use crate::ink::hairlines::{Hairlines, Steps};
-use crate::ink::line_width::{LineWidth, WIDEST_BESIDE_AREAS_PX};
+use crate::ink::line_width::{LineWidth, WIDEST_BESIDE_AREAS_PX, Widths};
 use crate::picture::Bitmap;
 
 /// Lines up to this width, px, are thin. Beside wider ones these say nothing of most of the drawing.
@@ -14,6 +14,8 @@ pub(crate) struct Pen {
     pub(crate) found_px: Option<u32>,
     /// The width to reckon with, px.
     pub(crate) width_px: u32,
+    /// That of the thinnest lines, px.
+    pub(crate) thinnest_px: u32,
     /// What thin lines are.
     pub(crate) hairlines: Hairlines,
     /// Whether the ink has no width that is common: no pen has drawn it.
@@ -52,7 +54,8 @@ impl PenSurvey {
     /// The pen, and the number of ink pixels.
     pub(crate) fn finish(self) -> (Pen, u64) {
         let Self { width, steps, ink_pixels } = self;
-        let ((found_px, is_silhouette), steps) = (width.finish_or_silhouette(), steps.finish());
+        let (Widths { pen_px: found_px, thinnest_px, is_silhouette }, steps) =
+            (width.widths(), steps.finish());
         let (found_px, width_px) = if is_raster_lines(steps.blocks, ink_pixels) {
             (found_px.map(|_| 1), 1)
         } else {
@@ -60,7 +63,8 @@ impl PenSurvey {
         };
         let are_thin = width_px <= WIDEST_HAIRLINE_PX;
         let hairlines = if are_thin { steps.hairlines(ink_pixels) } else { Hairlines::Raster };
-        (Pen { found_px, width_px, hairlines, is_silhouette }, ink_pixels)
+        let thinnest_px = thinnest_px.unwrap_or(width_px).min(width_px);
+        (Pen { found_px, width_px, thinnest_px, hairlines, is_silhouette }, ink_pixels)
     }
 }
 

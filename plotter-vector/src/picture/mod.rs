@@ -17,6 +17,7 @@ mod gray;
 #[cfg(feature = "image")]
 mod ground;
 pub(crate) mod histogram;
+pub(crate) mod joined_runs;
 pub(crate) mod oklab;
 #[cfg(feature = "image")]
 mod orientation;

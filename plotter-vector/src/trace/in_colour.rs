@@ -86,11 +86,11 @@ impl Vectorizer {
         for (done, (index, (pen, own))) in (1..).zip(layers.iter().enumerate()) {
             let mut ink = layers.bridged(index).unwrap_or_else(|| own.clone());
             let grey = layers.coverage(index, &ink, picture);
-            let Unordered { drawing: strokes, errors, areas, pen_px, removed: dirt } =
+            let Unordered { drawing: strokes, errors, areas, thinnest_px: own_px, removed: dirt } =
                 self.unordered(&mut ink, grey.as_ref().map(|levels| (levels, true)))?;
             let (strokes, _) = self.completed(strokes, errors, &ink, areas.as_ref());
             removed = removed.and(dirt);
-            thinnest_px = thinnest_px.min(pen_px);
+            thinnest_px = thinnest_px.min(own_px);
             for stroke in 0..strokes.strokes().len() {
                 drawing.push_curve(pen.number, strokes.curve(stroke));
             }

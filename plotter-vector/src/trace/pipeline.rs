@@ -123,7 +123,8 @@ pub struct Vectorizer {
     pub gap_px: Option<f64>,
     /// Ours: strokes shorter than this are left out, px; 0 for none.
     pub min_stroke_px: f64,
-    /// Ours: the order of the strokes.
+    /// Ours: the order of the strokes. What it leaves apart becomes one where two ends are no farther from each
+    /// other than the thinnest lines are wide.
     pub order: Order,
     /// Ours: rows that are worked on at a time. A measure of memory alone: it changes no result.
     pub band_rows: u32,
@@ -257,9 +258,9 @@ impl Vectorizer {
         grey: Option<(&Gray, bool)>,
         left_out: usize,
     ) -> Result<Vectorized, VectorizeError> {
-        let Unordered { drawing, errors, areas, pen_px, removed } = self.unordered(&mut ink, grey)?;
+        let Unordered { drawing, errors, areas, thinnest_px, removed } = self.unordered(&mut ink, grey)?;
         let (drawing, errors) = self.completed(drawing, errors, &ink, areas.as_ref());
-        let (drawing, errors) = self.in_order(drawing, errors, pen_px);
+        let (drawing, errors) = self.in_order(drawing, errors, thinnest_px);
         let errors = self.known_or_measured(errors, &ink, &drawing, areas.as_ref());
         Ok(Vectorized {
             error: errors.report,
@@ -313,13 +314,13 @@ impl Vectorizer {
     }
 
     /// The strokes of ours joined over gaps, without short ones, and in their order. What is left out makes
-    /// errors that are no longer known. Strokes end to end are one where a pen of `pen_px` that ends the one
-    /// overlaps with one that begins the other: there is no paper between.
+    /// errors that are no longer known. Strokes end to end are one where a pen as wide as the thinnest
+    /// line that ends the one overlaps with one that begins the other: there is no paper between.
     pub(crate) fn in_order(
         &self,
         mut drawing: Drawing,
         errors: Option<SheetErrors>,
-        pen_px: u32,
+        thinnest_px: u32,
     ) -> (Drawing, Option<SheetErrors>) {
         if self.algorithm == Algorithm::Published {
             return (drawing, errors);
@@ -332,7 +333,7 @@ impl Vectorizer {
             drawing = without_short(drawing, self.min_stroke_px);
             errors = None;
         }
-        let corner_gap_px = if pen_px > 1 { f64::from(pen_px) } else { 0.0 };
+        let corner_gap_px = if thinnest_px > 1 { f64::from(thinnest_px) } else { 0.0 };
         (self.order.apply_over_corners(&drawing, corner_gap_px), errors)
     }
 
@@ -382,7 +383,7 @@ impl Vectorizer {
         if self.algorithm == Algorithm::Published {
             let (drawing, errors) = self.published(ink)?;
             let removed = Despeckled::default();
-            return Ok(Unordered { drawing, errors: Some(errors), areas: None, pen_px: 1, removed });
+            return Ok(Unordered { drawing, errors: Some(errors), areas: None, thinnest_px: 1, removed });
         }
         self.check()?;
         let ink_pixels = ink.count();
@@ -391,7 +392,7 @@ impl Vectorizer {
             let (drawing, errors) = self.tracked(ink, pen.hairlines)?;
             // Of what is not straight the errors are not known from the figures.
             let errors = drawing.is_straight().then_some(errors);
-            return Ok(Unordered { drawing, errors, areas: None, pen_px: 1, removed });
+            return Ok(Unordered { drawing, errors, areas: None, thinnest_px: 1, removed });
         }
         let strokes = self.strokes(ink, grey, pen)?;
         let mut drawing = Drawing::new(ink.width(), ink.height());
@@ -399,7 +400,7 @@ impl Vectorizer {
             drawing.push_curve(1, within(stroke, ink.width(), ink.height()));
         }
         let areas = Some(self.opening(pen));
-        Ok(Unordered { drawing, errors: None, areas, pen_px: pen.width_px, removed })
+        Ok(Unordered { drawing, errors: None, areas, thinnest_px: pen.thinnest_px, removed })
     }
 
     /// Takes the dirt out of ink; the pen that drew it, and what was taken.
@@ -579,8 +580,8 @@ pub(crate) struct Unordered {
     pub(crate) errors: Option<SheetErrors>,
     /// What told areas from lines, where something did.
     pub(crate) areas: Option<Opening>,
-    /// Width of the pen, px; 1 where the strokes are the pixels.
-    pub(crate) pen_px: u32,
+    /// Width of the thinnest lines, px; 1 where the strokes are the pixels.
+    pub(crate) thinnest_px: u32,
     /// What was taken for dirt.
     pub(crate) removed: Despeckled,
 }

@@ -130,3 +130,16 @@ fn ends_of_lines_that_the_pen_joins_are_one_stroke() {
     let lines: Vec<Line> = tip.into_iter().chain(dashes).collect();
     assert_eq!(strokes(&inked(&[(5.0, &lines)])).strokes().len(), 3);
 }
+
+#[test]
+fn dashes_of_a_thin_pen_stay_apart_beside_wide_lines() {
+    let wide: Vec<Line> =
+        (0..5).map(|n| 40.0 + 30.0 * f64::from(n)).map(|y| [at(20.0, y), at(300.0, y)]).collect();
+    let dashes: Vec<Line> = (0..9)
+        .map(|n| 24.0 + 30.0 * f64::from(n))
+        .map(|x| [at(x, 220.0 + 0.2 * x), at(x + 25.0, 225.0 + 0.2 * x)])
+        .collect();
+    // The pen's round ends leave 3 px of paper and less between dashes.
+    let drawing = strokes(&inked(&[(6.0, &wide), (2.0, &dashes)]));
+    assert_eq!(drawing.strokes().len(), 14, "{drawing:?}");
+}

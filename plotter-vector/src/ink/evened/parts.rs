@@ -2,10 +2,8 @@
 
 use super::paper::Paper;
 use super::plane::Plane;
-use crate::disjoint_sets::DisjointSets;
 use crate::picture::Bitmap;
-use crate::picture::runs::ink_runs;
-use core::ops::Range;
+use crate::picture::joined_runs::{JoinedRuns, PartRun};
 
 /// A connected part of ink, over corners too.
 #[derive(Clone, Copy, Debug, Default)]
@@ -25,50 +23,19 @@ pub(super) struct Part {
 /// The runs of ink of all rows, and the part of each.
 #[derive(Debug, Default)]
 pub(super) struct Parts {
-    pub(super) runs: Vec<(u32, Range<u32>, usize)>,
+    pub(super) runs: Vec<PartRun>,
     pub(super) parts: Vec<Part>,
 }
 
 impl Parts {
     pub(super) fn of(ink: &Bitmap, darkness: &Plane, paper: &Paper) -> Self {
-        let mut runs: Vec<(u32, Range<u32>, usize)> = Vec::new();
-        let mut sets = DisjointSets::new(0);
-        let mut above = 0..0;
-        for y in 0..ink.height() {
-            let first = runs.len();
-            let mut from = above.start;
-            for run in ink_runs(ink.row(y)) {
-                let own = sets.push();
-                // Over a corner, too: a run that ends where this one begins touches it.
-                while let Some((_, upper, part)) = runs.get(from).filter(|_| from < above.end) {
-                    if upper.end < run.start {
-                        from += 1;
-                        continue;
-                    }
-                    if upper.start > run.end {
-                        break;
-                    }
-                    sets.join_to_lower(*part, own);
-                    if upper.end > run.end {
-                        break;
-                    }
-                    from += 1;
-                }
-                runs.push((y, run, own));
-            }
-            above = first..runs.len();
-        }
-        let mut number = vec![usize::MAX; runs.len()];
-        let mut parts: Vec<Part> = Vec::new();
-        for (y, run, part) in &mut runs {
-            let root = sets.root(*part);
-            let Some(slot) = number.get_mut(root) else { continue };
-            if *slot == usize::MAX {
-                *slot = parts.len();
+        let (runs, count) = JoinedRuns::of(ink).parts();
+        let mut parts: Vec<Part> = Vec::with_capacity(count);
+        for (y, run, part) in &runs {
+            if *part == parts.len() {
                 parts.push(Part { columns: [run.start, run.end], rows: [*y, *y], ..Part::default() });
             }
-            *part = *slot;
-            let Some(found) = parts.get_mut(*slot) else { continue };
+            let Some(found) = parts.get_mut(*part) else { continue };
             found.area_px += run.len();
             found.columns = [found.columns[0].min(run.start), found.columns[1].max(run.end)];
             found.rows[1] = *y;

@@ -292,7 +292,7 @@ impl Vectorizer {
                 drawing.push_curve(1, within(stroke, width, height));
             }
         }
-        let (drawing, _) = self.in_order(drawing, None, if keeps_pixels { 1 } else { pen.width_px });
+        let (drawing, _) = self.in_order(drawing, None, if keeps_pixels { 1 } else { pen.thinnest_px });
         let dirt = Dirt { least_px: smallest_px, removed, left_out };
         let doubt = Doubt::of(&drawing, pen.width_px, dirt, || {
             let mut sizes = MarkSizes::new(width);
@@ -316,9 +316,9 @@ impl Vectorizer {
         with_errors: bool,
         left_out: usize,
     ) -> Result<(Drawing, Option<SheetErrors>, Despeckled, Option<Doubt>), SheetError> {
-        let Unordered { drawing, errors, areas, pen_px, removed } = self.unordered(&mut ink, None)?;
+        let Unordered { drawing, errors, areas, thinnest_px, removed } = self.unordered(&mut ink, None)?;
         let (drawing, errors) = self.completed(drawing, errors, &ink, areas.as_ref());
-        let (drawing, errors) = self.in_order(drawing, errors, pen_px);
+        let (drawing, errors) = self.in_order(drawing, errors, thinnest_px);
         let errors = with_errors.then(|| self.known_or_measured(errors, &ink, &drawing, areas.as_ref()));
         let doubt = self.doubt(&drawing, &ink, removed, left_out)?;
         Ok((drawing, errors, removed, doubt))
