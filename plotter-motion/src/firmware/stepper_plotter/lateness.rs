@@ -44,6 +44,27 @@ impl Lateness {
     /// in pairs.
     pub const ALLOWED: Duration = Duration::from_micros(100);
 
+    /// The same, in microseconds.
+    #[cfg(feature = "step-ahead")]
+    pub(super) const ALLOWED_US: u32 = 100;
+
+    /// A step was late by so much.
+    #[cfg(feature = "step-ahead")]
+    pub(super) fn count(&mut self, late_us: u32) {
+        self.steps = self.steps.saturating_add(1);
+        self.greatest_ns = self.greatest_ns.max(late_us.saturating_mul(1000));
+    }
+
+    #[cfg(feature = "step-ahead")]
+    pub(super) const fn greatest_us(&self) -> u32 {
+        self.greatest_ns / 1000
+    }
+
+    #[cfg(feature = "step-ahead")]
+    pub(super) const fn told(steps: u32, greatest_us: u32) -> Self {
+        Self { steps, greatest_ns: greatest_us.saturating_mul(1000) }
+    }
+
     /// Steps that were given later than [`Lateness::ALLOWED`].
     #[must_use]
     pub const fn steps(&self) -> u32 {

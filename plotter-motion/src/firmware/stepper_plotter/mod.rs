@@ -154,6 +154,9 @@
 //! [`StepperPlotter::lateness`] tells how many steps were late, and how late the latest was: with anything
 //! but zeros there, the loop is too slow for the speed of the machine.
 //!
+//! A firmware that plans in its main loop and steps in a timer's interrupt has no such loop: with the feature
+//! `step-ahead` [`StepperPlotter::split`] takes the controller apart for that.
+//!
 //! # Play
 //!
 //! Where an axis turns round, extra steps take up its play ([`StepperPlotterSettings::backlash`]) while the
@@ -174,6 +177,8 @@
 //! Sources: Dounaev and Phan, "X-Y Plotter Project"; the firmware xybot and the program mDraw; the Grbl
 //! project's wiki on version 1.1.
 
+#[cfg(feature = "step-ahead")]
+mod ahead;
 mod area;
 mod bytes;
 mod command;
@@ -194,6 +199,8 @@ mod settings;
 mod startup_lines;
 mod status;
 
+#[cfg(feature = "step-ahead")]
+pub use ahead::{Planning, Stepping, StepsAhead, Underruns};
 pub use command::{Command, Report, Signal, Stop};
 pub use command_queue::{COMMANDS, CommandQueue};
 pub use grbl::{AnyPen, Grbl, Pens, SpindlePen};

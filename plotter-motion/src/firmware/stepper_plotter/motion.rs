@@ -1,7 +1,12 @@
 //! [`Motion`]: the task that moves: commands in, steps out, each at its time.
 
+#[cfg(feature = "step-ahead")]
+mod ahead;
 mod by_hand;
 mod work;
+
+#[cfg(feature = "step-ahead")]
+pub(super) use ahead::Made;
 
 use super::homing_run::HomingRun;
 use super::play::{CLOCK_HZ, Play};
@@ -85,6 +90,8 @@ pub struct Motion<M: Modes = AllModes> {
     beam: Beam<'static>,
     due: Option<Duration>,
     lateness: Lateness,
+    #[cfg(feature = "step-ahead")]
+    ahead: ahead::Ahead,
 }
 
 impl Motion {
@@ -151,6 +158,8 @@ impl<M: Modes> Motion<M> {
             beam: Beam::OFF,
             due: None,
             lateness: Lateness::default(),
+            #[cfg(feature = "step-ahead")]
+            ahead: ahead::Ahead::default(),
         }
     }
 
@@ -372,6 +381,10 @@ impl<M: Modes> Motion<M> {
 
     /// Where the carriage is, steps.
     fn carriage(&self) -> StepPoint {
+        #[cfg(feature = "step-ahead")]
+        if let Some(made) = self.ahead.made {
+            return made.gap.carriage(made.at);
+        }
         self.play.get().map_or(self.position, |play| play.carriage(self.position))
     }
 
@@ -387,6 +400,10 @@ impl<M: Modes> Motion<M> {
 
     /// Whether something is on its way: steps, or a pause that is not over.
     fn moves(&self, now: Duration) -> bool {
+        #[cfg(feature = "step-ahead")]
+        if self.ahead.made.is_some_and(|made| !made.stands) {
+            return true;
+        }
         self.next.is_some() || !self.at_rest || !has_come(self.time_of(self.steps.tick()), now)
     }
 

@@ -3,7 +3,7 @@
 use super::StepperPlotterSettings;
 use crate::kinematics::Backlash;
 use crate::{
-    StepPoint,
+    StepPair, StepPoint,
     safety::Pulse,
     stepgen::{BacklashSteps, TimedEvent},
 };
@@ -17,8 +17,45 @@ pub(super) const CLOCK_HZ: u32 = 1_000_000;
 pub(super) struct Play {
     steps: Option<BacklashSteps>,
     most: Backlash,
-    /// How far each motor has come within its gap, from where it drives backwards.
-    gap: [u16; 2],
+    gap: Gap,
+}
+
+/// How far each motor has come within its gap, from where it drives backwards.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Gap([u16; 2]);
+
+impl Gap {
+    /// The motors have made a step.
+    pub(super) fn made(&mut self, step: StepPair, most: Backlash) {
+        let most = [most.x_steps, most.y_steps];
+        for ((gap, most), step) in self.0.iter_mut().zip(most).zip([step.x, step.y]) {
+            *gap = match step.signum() {
+                1 => gap.saturating_add(1).min(most),
+                -1 => gap.saturating_sub(1),
+                _ => *gap,
+            };
+        }
+    }
+
+    /// Where the carriage is, in steps, with the motors at `motors`.
+    pub(super) fn carriage(self, motors: StepPoint) -> StepPoint {
+        let [x, y] = self.0.map(i32::from);
+        StepPoint::new(motors.x.saturating_sub(x), motors.y.saturating_sub(y))
+    }
+}
+
+#[cfg(feature = "step-ahead")]
+impl Gap {
+    /// Both numbers in one, and back.
+    pub(super) fn bits(self) -> u32 {
+        let [[a, b], [c, d]] = self.0.map(u16::to_le_bytes);
+        u32::from_le_bytes([a, b, c, d])
+    }
+
+    pub(super) fn of_bits(bits: u32) -> Self {
+        let [a, b, c, d] = bits.to_le_bytes();
+        Self([u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d])])
+    }
 }
 
 impl Play {
@@ -28,7 +65,7 @@ impl Play {
         let start_hz = settings.home_x.start_hz.min(settings.home_y.start_hz).max(1);
         let interval_ticks = CLOCK_HZ.div_ceil(start_hz).into();
         let has_play = most != Backlash::default();
-        Self { steps: has_play.then(|| BacklashSteps::new(most, interval_ticks)), most, gap: [0; 2] }
+        Self { steps: has_play.then(|| BacklashSteps::new(most, interval_ticks)), most, gap: Gap::default() }
     }
 
     /// The machine is another one from here on; nothing is owed.
@@ -57,25 +94,29 @@ impl Play {
 
     /// The motors have made a step.
     pub(super) fn made(&mut self, pulse: Pulse) {
-        let most = [self.most.x_steps, self.most.y_steps];
-        for ((gap, most), step) in self.gap.iter_mut().zip(most).zip([pulse.x(), pulse.y()]) {
-            *gap = match step.signum() {
-                1 => gap.saturating_add(1).min(most),
-                -1 => gap.saturating_sub(1),
-                _ => *gap,
-            };
-        }
+        self.gap.made(pulse.into(), self.most);
     }
 
     /// Where the carriage is, in steps, with the motors at `motors`.
     pub(super) fn carriage(&self, motors: StepPoint) -> StepPoint {
-        let [x, y] = self.gap.map(i32::from);
-        StepPoint::new(motors.x.saturating_sub(x), motors.y.saturating_sub(y))
+        self.gap.carriage(motors)
+    }
+
+    #[cfg(feature = "step-ahead")]
+    pub(super) const fn gap(&self) -> Gap {
+        self.gap
+    }
+
+    /// The motors have been stopped at once, where they have come to within their gaps.
+    #[cfg(feature = "step-ahead")]
+    pub(super) fn stopped_at(&mut self, gap: Gap) {
+        self.gap = gap;
+        self.stopped();
     }
 
     /// The motors have been stopped at once.
     pub(super) fn stopped(&mut self) {
-        let [x, y] = self.gap;
+        let Gap([x, y]) = self.gap;
         if let Some(steps) = &mut self.steps {
             steps.clear(x, y);
         }
@@ -83,7 +124,7 @@ impl Play {
 
     /// Both axes stand where they have been driven backwards to.
     pub(super) fn homed(&mut self) {
-        self.gap = [0; 2];
+        self.gap = Gap::default();
         self.stopped();
     }
 }

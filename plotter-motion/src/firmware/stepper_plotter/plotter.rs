@@ -33,9 +33,9 @@ use core::time::Duration;
 /// ```
 #[derive(Debug, PartialEq)]
 pub struct StepperPlotter<H: Host = Receive, M: Modes = AllModes> {
-    receive: H,
-    motion: Motion<M>,
-    link: Link,
+    pub(super) receive: H,
+    pub(super) motion: Motion<M>,
+    pub(super) link: Link,
 }
 
 impl StepperPlotter {
@@ -218,7 +218,7 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
         self.motion.position_mm()
     }
 
-    fn work(&mut self, now: Duration) {
+    pub(super) fn work(&mut self, now: Duration) {
         let status = self.motion.status(now);
         self.receive.work(&status, &mut self.link);
     }

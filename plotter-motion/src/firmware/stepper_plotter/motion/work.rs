@@ -39,7 +39,11 @@ impl<M: Modes> Motion<M> {
 
     /// The one way of a step to the motors.
     pub(super) fn pass(&mut self, step: StepPair, link: &mut Link) -> Option<Pulse<'static>> {
-        match self.gate.pass_step(step).map(Pulse::kept) {
+        #[cfg(feature = "step-ahead")]
+        let passed = self.pass_ahead(step);
+        #[cfg(not(feature = "step-ahead"))]
+        let passed = self.gate.pass_step(step);
+        match passed.map(Pulse::kept) {
             Ok(pulse) => {
                 self.position.x = self.position.x.saturating_add(pulse.x().into());
                 self.position.y = self.position.y.saturating_add(pulse.y().into());
@@ -85,6 +89,8 @@ impl<M: Modes> Motion<M> {
             if core::mem::take(&mut self.at_rest) {
                 self.begin(now);
             }
+            #[cfg(feature = "step-ahead")]
+            self.ahead.note(&action);
             if let Action::Phase(phase) = action {
                 self.phase = Some((self.time_of(self.steps.tick()), phase));
             }
@@ -111,6 +117,10 @@ impl<M: Modes> Motion<M> {
         if self.unfinished && !self.cancelling && self.planner.rest().is_ok() {
             self.unfinished = false;
             return true;
+        }
+        #[cfg(feature = "step-ahead")]
+        if self.ahead.waits_for_motors() {
+            return false;
         }
         (self.at_rest, self.start_at) = (true, None);
         // The last phase may last beyond its last step, and a pause has no step.
@@ -266,6 +276,8 @@ impl<M: Modes> Motion<M> {
         };
         if result.is_ok() {
             self.position = StepPoint::default();
+            #[cfg(feature = "step-ahead")]
+            self.ahead.homed();
             if let Some(play) = self.play.get_mut() {
                 play.homed();
             }

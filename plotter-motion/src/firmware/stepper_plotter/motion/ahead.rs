@@ -1,0 +1,172 @@
+//! What the motion side does differently when it is asked for its steps ahead of their time.
+
+use super::super::ahead::energy::{Curve, Stretch};
+use super::super::play::Gap;
+use super::super::{Link, Stop};
+use super::{Motion, State};
+use crate::planner::{Action, Keep as _, Modes, Phase};
+use crate::safety::{Blocked, Pulse};
+use crate::{LimitSwitches, PlannerSettings, SafetyGate, StepPair, StepPoint};
+use core::time::Duration;
+
+/// What the motors have really done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in super::super) struct Made {
+    /// Steps made.
+    pub(in super::super) at: StepPoint,
+    pub(in super::super) gap: Gap,
+    /// Whether these are all that have been given.
+    pub(in super::super) stands: bool,
+}
+
+/// What only a motion side needs that is ahead.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Ahead {
+    /// None while it is not.
+    pub(super) made: Option<Made>,
+    curve: Curve,
+    /// All that is planned has been given; the motors are not there yet.
+    ended: bool,
+    has_homed: bool,
+}
+
+impl Ahead {
+    /// Notes how the path goes on.
+    pub(super) fn note(&mut self, action: &Action) {
+        self.ended = false;
+        if let Action::Course(course) = action {
+            self.curve = Curve::of(&course.shape, course.length_mm);
+        }
+    }
+
+    /// All that is planned has been given: whether the motors have yet to make it.
+    pub(super) fn waits_for_motors(&mut self) -> bool {
+        self.ended = self.made.is_some_and(|made| !made.stands);
+        self.ended
+    }
+
+    /// The motors stand at the origin from here on.
+    pub(super) fn homed(&mut self) {
+        if let Some(made) = &mut self.made {
+            (made.at, made.gap) = (StepPoint::default(), Gap::default());
+            self.has_homed = true;
+        }
+    }
+}
+
+impl<M: Modes> Motion<M> {
+    /// From here on steps are given ahead of their time; the gate goes to who makes them.
+    pub(in super::super) fn begin_ahead(&mut self) -> SafetyGate {
+        let (at, gap) = self.stands_at();
+        self.ahead.made = Some(Made { at, gap, stands: true });
+        let gate = &self.gate;
+        let mut own = SafetyGate::new(gate.limits(), gate.is_latched());
+        own.emergency_stop(gate.is_button_pressed());
+        core::mem::replace(&mut self.gate, own)
+    }
+
+    /// Where the motors stand, and how far each has come within its play.
+    pub(in super::super) fn stands_at(&self) -> (StepPoint, Gap) {
+        (self.position, self.play.get().map(super::Play::gap).unwrap_or_default())
+    }
+
+    pub(in super::super) const fn gate(&self) -> &SafetyGate {
+        &self.gate
+    }
+
+    /// The limits in force.
+    pub(in super::super) const fn limits(&self) -> PlannerSettings {
+        *self.planner.settings()
+    }
+
+    /// When the next event is due that has been planned.
+    pub(in super::super) fn event_at(&self) -> Option<Duration> {
+        let event = self.next.filter(|_| self.state == State::Ready)?;
+        Some(self.time_of(event.tick))
+    }
+
+    /// Whether what it does next depends on what time it is: a machine that stands, or homes, or is stopped.
+    pub(in super::super) fn waits_for_time(&self) -> bool {
+        self.state != State::Ready || self.at_rest
+    }
+
+    /// Whether all that is planned has been given.
+    pub(in super::super) const fn stands(&self) -> bool {
+        self.at_rest || self.ahead.ended
+    }
+
+    /// The motors have come to where they were to.
+    pub(in super::super) const fn come_to_rest(&mut self) {
+        self.at_rest |= self.ahead.ended;
+    }
+
+    pub(in super::super) fn is_homing(&self) -> bool {
+        matches!(self.state, State::Homing(_))
+    }
+
+    pub(in super::super) const fn is_dark(&self) -> bool {
+        self.dark
+    }
+
+    /// Whether the planner has room for what a host may send.
+    pub(in super::super) fn could_take_more(&self) -> bool {
+        !self.held && !self.cancelling && self.planner.has_room()
+    }
+
+    /// The phase in which steps are made, when it began, and whether the machine stood then.
+    pub(in super::super) fn phased(&self) -> (Duration, Stretch, bool) {
+        let (began, phase) = self.phase.unwrap_or((Duration::ZERO, Phase::default()));
+        (began, Stretch { phase, curve: self.ahead.curve }, phase.speed_mm_s <= 0.0)
+    }
+
+    /// All that is to come is put off.
+    pub(in super::super) fn put_off(&mut self, by: Duration) {
+        self.base = self.base.saturating_add(by);
+    }
+
+    pub(in super::super) const fn note_made(&mut self, made: Made) {
+        self.ahead.made = Some(made);
+    }
+
+    /// Whether it has just homed: the motors stand at the origin from here on.
+    pub(in super::super) const fn take_homed(&mut self) -> bool {
+        core::mem::replace(&mut self.ahead.has_homed, false)
+    }
+
+    /// Notes all switches and the button.
+    pub(in super::super) const fn note_switches(&mut self, limits: LimitSwitches, button: bool) {
+        self.gate.set_limits(limits);
+        self.gate.emergency_stop(button);
+    }
+
+    pub(in super::super) const fn stop_by_host(&mut self) {
+        self.gate.stop_by_host(true);
+    }
+
+    /// The motors were stopped here; what was given after that was not made.
+    pub(in super::super) fn come_back_to(&mut self, at: StepPoint, gap: Gap) {
+        self.position = at;
+        if let Some(play) = self.play.get_mut() {
+            play.stopped_at(gap);
+        }
+    }
+
+    /// They were stopped for this.
+    pub(in super::super) fn stop_for(&mut self, why: Stop, link: &mut Link) {
+        self.stop(why, link);
+        self.ahead.ended = false;
+        if let Stop::Reset { .. } = why {
+            self.end_overrides();
+        }
+    }
+
+    /// The way of a step that is given ahead of its time: what has been stopped gives none. Whether a limit
+    /// switch is in its way is known at its time, to the gate of who makes it.
+    pub(super) fn pass_ahead(&self, step: StepPair) -> Result<Pulse<'_>, Blocked> {
+        if self.ahead.made.is_some() && self.state == State::Ready && !self.gate.is_stopped() {
+            Ok(Pulse::planned(step))
+        } else {
+            self.gate.pass_step(step)
+        }
+    }
+}
