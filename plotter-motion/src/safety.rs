@@ -255,12 +255,6 @@ impl Pulse<'_> {
         self.y
     }
 
-    /// A step that will be made once a gate has passed it: it does not leave the crate.
-    #[cfg(feature = "step-ahead")]
-    pub(crate) const fn planned(step: StepPair) -> Pulse<'static> {
-        pulse(step)
-    }
-
     /// As [`Drive::kept`].
     pub(crate) const fn kept(self) -> Pulse<'static> {
         pulse(StepPair { x: self.x, y: self.y })

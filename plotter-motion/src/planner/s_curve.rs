@@ -8,7 +8,9 @@
 
 use super::Phase;
 use super::ring::Ring;
+use crate::extremes::{greatest, least};
 use crate::geom::single;
+use crate::root::root;
 use crate::{MotionLimits, profile::SCurve};
 
 /// Longest phase, s (47 ms): a feed hold begins to act after this time at the latest, as with trapezoids.
@@ -19,9 +21,10 @@ const PARTS: f64 = 32.0;
 const SHORTEST_S: f64 = 0.000_2;
 /// How much longer a part may be while nothing lies in the way: tried in this order.
 const LONGER: [f64; 4] = [64.0, 16.0, 4.0, 1.0];
-/// Halvings of the range of jerks in the search for the greatest viable one: to 6e-8 of the range, as fine as
-/// `f32`.
-const HALVINGS: u32 = 24;
+/// How nearly the greatest viable jerk is found: to 6e-8 of the range, as fine as `f32`, or until what lies ahead
+/// is kept by no more than this, mm: a tenth of [`TIGHT_MM`].
+const KEPT_SHARE: f64 = 6e-8;
+const KEPT_MARGIN: f64 = 1e-7;
 /// Distance by which rounding may make a braking end too late, mm: `f64` holds a block of a kilometre to a
 /// tenth of it.
 const SLACK_MM: f64 = 1e-9;
@@ -138,10 +141,38 @@ impl State {
         Braking { in_s: ((accel + deepest) / jerk).max(0.0), steady_s, out_s: deepest / jerk }
     }
 
-    /// Whether a braking can be ended before the motion turns back.
-    fn can_let_go(self, limits: Limits) -> bool {
+    /// By how much a braking can be ended before the motion turns back, mm/s.
+    fn to_let_go(self, limits: Limits) -> f64 {
         let coming = if self.accel < 0.0 { 0.5 * self.accel * self.accel / limits.jerk } else { 0.0 };
-        self.speed >= coming - STANDSTILL_MM_S
+        self.speed + STANDSTILL_MM_S - coming
+    }
+
+    /// Whether the hardest braking to a speed ends within a distance in any case: by a bound on its length that
+    /// takes no difference of numbers. It is at most twice as long as the braking, and so tells of most places
+    /// that they do not matter; `f32` is some twenty times as quick on a small processor, and what it loses is
+    /// far below the margin.
+    fn surely_brakes_within(self, to: f64, limits: Limits, distance_mm: f64) -> bool {
+        /// What rounding may take from the bound, as a share: hundreds of times what it does take.
+        const MARGIN: f32 = 1.001;
+        /// Share of a speed that both of two that are nearly the same may have lost by rounding.
+        const ROUNDING: f32 = 4.0 * f32::EPSILON;
+        let [speed, accel, to] = [self.speed, self.accel, to].map(single);
+        let (most, jerk) = (single(limits.accel), single(limits.jerk));
+        let rising = greatest(accel, 0.0);
+        // As fast as it may come to be, and from there on to the speed.
+        let coming = 0.5 * rising * rising / jerk;
+        let peak = speed + coming;
+        let excess = greatest(peak - to, 0.0) + ROUNDING * greatest(peak, 0.0);
+        // To no acceleration; as a triangle or a trapezoid down to the speed.
+        let deepest = least(root(jerk * excess), most);
+        let down_s = if deepest > 0.0 { deepest / jerk + excess / deepest } else { 0.0 };
+        let time_s = accel.abs() / jerk + down_s;
+        greatest(peak, 0.0) * time_s * MARGIN < single(distance_mm)
+    }
+
+    /// Whether it ends within a distance.
+    fn brakes_within(self, to: f64, limits: Limits, distance_mm: f64) -> bool {
+        self.surely_brakes_within(to, limits, distance_mm) || self.braking_mm(to, limits) <= distance_mm
     }
 
     /// Length of the hardest braking to a speed, mm.
@@ -200,7 +231,7 @@ impl<const N: usize> Ahead<N> {
         for index in 0..self.count {
             let Some(&(place_mm, most)) = self.places.get(index) else { break };
             let is_kept = peak * (1.0 + SPARE) <= most
-                || state.braking_mm(most, limits) <= place_mm - way_mm - SPARE_MM;
+                || state.brakes_within(most, limits, place_mm - way_mm - SPARE_MM);
             if !is_kept && let Some(place) = self.places.get_mut(count) {
                 *place = (place_mm, most);
                 count += 1;
@@ -212,12 +243,78 @@ impl<const N: usize> Ahead<N> {
     /// Whether a state that is `way_mm` ahead can still keep everything.
     fn is_viable(&self, state: State, way_mm: f64, limits: Limits) -> bool {
         let peak = state.peak(limits);
-        let within = state.speed >= -STANDSTILL_MM_S && peak <= self.cruise * (1.0 + 1e-12) + STANDSTILL_MM_S;
-        within
+        self.room_for(state, peak) >= 0.0
             && self.places().iter().all(|&(place_mm, most)| {
-                peak <= most || state.braking_mm(most, limits) <= place_mm - way_mm + SLACK_MM
+                peak <= most || state.brakes_within(most, limits, place_mm - way_mm + SLACK_MM)
             })
     }
+
+    /// By how much it keeps everything, the least of speeds in mm/s and distances in mm; below 0 it does not.
+    fn margin(&self, state: State, way_mm: f64, limits: Limits) -> f64 {
+        let peak = state.peak(limits);
+        let room = self.room_for(state, peak);
+        if room < 0.0 {
+            return room;
+        }
+        let beyond = self.places().iter().filter(|(_, most)| peak > *most);
+        beyond.fold(room, |least, &(place_mm, most)| {
+            least.min(place_mm - way_mm + SLACK_MM - state.braking_mm(most, limits))
+        })
+    }
+
+    /// By how much a state is neither backwards nor beyond the cruising speed, mm/s.
+    fn room_for(&self, state: State, peak: f64) -> f64 {
+        let forwards = state.speed + STANDSTILL_MM_S;
+        // How far it is from turning back does not fall with a greater jerk, and is no margin to go by.
+        if forwards < 0.0 { forwards } else { self.cruise * (1.0 + 1e-12) + STANDSTILL_MM_S - peak }
+    }
+}
+
+/// The greatest number of a range whose margin is not below 0, by less than [`KEPT_MARGIN`] or
+/// [`KEPT_SHARE`] of the range; the least one if there is none. The margin falls.
+///
+/// By false position as the Illinois algorithm has it (M. Dowell and P. Jarratt, "A modified regula falsi method
+/// for computing the root of an equation", BIT 11, 1971), with a halving wherever that gains little: a third of
+/// the steps that halvings take.
+fn greatest_kept([mut low, mut high]: [f64; 2], margin: impl Fn(f64) -> f64) -> f64 {
+    let least_width = KEPT_SHARE * (high - low);
+    let at_high = margin(high);
+    if at_high >= 0.0 {
+        return high;
+    }
+    // What the secant is drawn through: where an end stays twice, half of what is there.
+    let mut ends = [margin(low), at_high];
+    let mut stayed = None;
+    let (mut width, mut steps) = (high - low, 0);
+    // Ends: in three steps the range is at most half as wide.
+    while high - low > least_width {
+        // The least number stays even if it does not keep everything, but for rounding.
+        let share = if steps < 2 && ends[0] > 0.0 { ends[0] / (ends[0] - ends[1]) } else { 0.5 };
+        let share = if share.is_finite() { share.clamp(1e-3, 0.999) } else { 0.5 };
+        let at = low + share * (high - low);
+        let here = margin(at);
+        let is_kept = here >= 0.0;
+        if is_kept {
+            (low, ends[0]) = (at, here);
+            if here <= KEPT_MARGIN {
+                break;
+            }
+        } else {
+            (high, ends[1]) = (at, here);
+        }
+        // The end that stays is the other one.
+        if stayed == Some(is_kept) {
+            ends[usize::from(is_kept)] *= 0.5;
+        }
+        stayed = Some(is_kept);
+        steps += 1;
+        if high - low <= 0.5 * width {
+            (width, steps) = (high - low, 0);
+        } else if steps == 3 {
+            steps = 0;
+        }
+    }
+    low
 }
 
 /// Where the jerk-limited motion stands within the head of the ring.
@@ -471,23 +568,17 @@ impl SCurveState {
             time_s = time_s.min(to_deepest_s);
         }
         let mut low = (-limits.jerk).max((-limits.accel - state.accel) / time_s);
-        let mut high = limits.jerk.min((limits.accel - state.accel) / time_s);
-        if !state.after(low, time_s).0.can_let_go(limits) {
-            let (mut back, mut forth) = (low, high);
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (back + forth);
-                if state.after(middle, time_s).0.can_let_go(limits) { forth = middle } else { back = middle }
-            }
-            low = forth;
+        let high = limits.jerk.min((limits.accel - state.accel) / time_s);
+        if state.after(low, time_s).0.to_let_go(limits) < 0.0 {
+            low = -greatest_kept([-high, -low], |back| state.after(-back, time_s).0.to_let_go(limits));
         }
         let (after, way_mm) = state.after(high, time_s);
         ahead.leave_out_kept(after, way_mm, limits);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            let (after, way_mm) = state.after(middle, time_s);
-            let fits = state.peak_within(middle, time_s) <= ahead.cruise + STANDSTILL_MM_S;
-            if fits && ahead.is_viable(after, way_mm, limits) { low = middle } else { high = middle }
-        }
+        low = greatest_kept([low, high], |jerk| {
+            let (after, way_mm) = state.after(jerk, time_s);
+            let below_mm_s = ahead.cruise + STANDSTILL_MM_S - state.peak_within(jerk, time_s);
+            below_mm_s.min(ahead.margin(after, way_mm, limits))
+        });
         let (_, way_mm) = state.after(low, time_s);
         if way_mm <= DONE_MM && stands {
             // Too near to a corner that must be taken very slowly: there by itself, and then on.
@@ -514,7 +605,7 @@ impl SCurveState {
         let time_s = time_s.min(part_s);
         let (after, way_mm) = state.after(jerk, time_s);
         let keeps = ahead.places().iter().all(|&(place_mm, most)| {
-            after.speed <= most || after.braking_mm(most, limits) <= place_mm - way_mm + SLACK_MM
+            after.speed <= most || after.brakes_within(most, limits, place_mm - way_mm + SLACK_MM)
         });
         if jerk >= 0.0 && !keeps {
             return None;
@@ -533,7 +624,9 @@ impl SCurveState {
     ) -> Option<Chosen> {
         let state = self.state;
         let slack = |&&(place_mm, most): &&(f64, f64)| {
-            state.speed > most && (place_mm - state.braking_mm(most, limits)).abs() <= TIGHT_MM
+            state.speed > most
+                && !state.surely_brakes_within(most, limits, place_mm - TIGHT_MM)
+                && (place_mm - state.braking_mm(most, limits)).abs() <= TIGHT_MM
         };
         let &(_, most) = ahead.places().iter().find(slack)?;
         let Braking { in_s, steady_s, out_s } = state.braking(most, limits);
@@ -565,4 +658,37 @@ fn rest_to_rest(way_mm: f64, cruise: f64, limits: Limits) -> Chosen {
         let [jerk_s, steady_s, _, cruise_s, ..] = motion.phases_s();
         Chosen::RestToRest { jerk_s, steady_s, cruise_s }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        #[test]
+        fn what_surely_ends_within_a_distance_does(
+            speed in 0.0..1e3_f64,
+            share in -1.0..1.0_f64,
+            to in prop_oneof![Just(0.0), 0.0..1.0_f64, Just(1.0), 0.999_999..1.000_001],
+            accel in 1.0..1e5_f64,
+            jerk in 1.0..1e8_f64,
+            distance in 0.1..3.0_f64,
+        ) {
+            let limits = Limits { accel, jerk };
+            let (state, to) = (State { speed, accel: share * accel }, to * speed);
+            let braking_mm = state.braking_mm(to, limits);
+            let distance_mm = distance * braking_mm;
+            if state.surely_brakes_within(to, limits, distance_mm) {
+                prop_assert!(braking_mm <= distance_mm, "{state:?} to {to}: {braking_mm} mm");
+            }
+            // It tells where there is twice the room, and some for what rounding may take.
+            prop_assert!(
+                share < 0.0 || state.surely_brakes_within(to, limits, 2.1 * braking_mm + 0.01 * speed),
+                "{state:?} to {to}: {braking_mm} mm"
+            );
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! The stepper plotter's controller in two halves: a main loop that is away now and then, and an interrupt that
 //! comes in time. Beside it the same controller in one piece, whose main loop is always there.
 
+use crate::drawings;
 use crate::stepper_bench;
 
 use core::time::Duration;
@@ -11,7 +12,7 @@ use plotter_motion::firmware::stepper_plotter::{
 use plotter_motion::kinematics::Backlash;
 use plotter_motion::planner::PathMode;
 use plotter_motion::{
-    Axis, Direction, LimitSwitches, PlannerSettings, Point, SafetyGate, StepPair, StepPoint, Vec2,
+    Axis, Direction, LimitSwitches, PlannerSettings, PlotOp, Point, SafetyGate, StepPair, StepPoint, Vec2,
 };
 use proptest::prelude::*;
 use std::collections::VecDeque;
@@ -129,7 +130,12 @@ impl Halves {
                 let next = self.now_us / LOOP_US * LOOP_US + LOOP_US;
                 self.run_to(next);
             }
-            assert!(self.now() < now + Duration::from_secs(600), "it does not end");
+            assert!(
+                self.now() < now + Duration::from_secs(3_600),
+                "it does not end: {:?}, {:?}, {owed:?}",
+                self.planning.status(self.now()),
+                self.planning.underruns()
+            );
         }
         for _ in 0..100_000 {
             if self.planning.status(self.now()).activity == Activity::Idle {
@@ -637,4 +643,47 @@ fn two_threads_make_every_step_once_and_in_order() {
         stepper.join().unwrap()
     });
     assert!(made == alone.iter().map(|made| made.1).collect::<Vec<_>>());
+}
+
+/// A drawing as G-code: its strokes with the pen down, all that the area takes.
+fn as_text(ops: &[PlotOp]) -> String {
+    let mut text = String::new();
+    let (mut is_down, mut at) = (false, Point::ORIGIN);
+    for op in ops {
+        let (to, draws) = match *op {
+            PlotOp::Travel { to } => (to, false),
+            PlotOp::Draw { to, .. } | PlotOp::DrawArc { to, .. } => (to, true),
+            _ => continue,
+        };
+        if draws != is_down {
+            text += if draws { "M3\n" } else { "M5\n" };
+            is_down = draws;
+        }
+        let (x, y) = (to.x.clamp(0.0, 380.0), to.y.clamp(0.0, 310.0));
+        text += &match *op {
+            PlotOp::DrawArc { centre, sweep_rad, .. } => {
+                let code = if sweep_rad > 0.0 { 3 } else { 2 };
+                let out = centre - at;
+                format!("G{code}X{x:.4}Y{y:.4}I{:.4}J{:.4}F6000\n", out.x, out.y)
+            }
+            _ if draws => format!("G1X{x:.4}Y{y:.4}F6000\n"),
+            _ => format!("G0X{x:.4}Y{y:.4}\n"),
+        };
+        at = Point::new(x, y);
+    }
+    text + "M5\nM2\n"
+}
+
+/// The drawings on which planning is measured, four of them of other programs.
+#[test]
+#[ignore = "long: .ci/run has it in release"]
+fn every_step_of_the_measured_drawings_is_at_its_tick() {
+    for drawing in drawings::built().into_iter().chain(drawings::real()) {
+        let text = as_text(&drawing.ops);
+        for (planner, mode) in modes().into_iter().zip(["exact", "tolerance", "s-curve", "tolerance s-curve"])
+        {
+            let steps = assert_in_time::<8192>(settings(planner), &text);
+            println!("{} {mode}: {steps} steps, none late, none slowed", drawing.name);
+        }
+    }
 }

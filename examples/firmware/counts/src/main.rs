@@ -6,6 +6,7 @@
 #![no_std]
 #![no_main]
 
+mod ahead;
 mod counter;
 mod drawings;
 mod joint;
@@ -23,6 +24,7 @@ use plotter_motion::firmware::{Gantry, GantrySettings};
 use plotter_motion::kinematics::{Cartesian, MotorScale};
 use plotter_motion::plant::AxisPlant;
 use plotter_motion::protocol::digits;
+use plotter_motion::firmware::stepper_plotter::StepsAhead;
 use plotter_motion::{Axis, Direction, LimitSwitches, Machine, MachineConfig, PathMode, Planner, PlannerSettings, PlotOp, SafetyGate, StepGen, StepPoint, planner::Action, stepgen::{MotorEvent, StepGenSettings, StepQueue}};
 use vcell::VolatileCell;
 
@@ -185,6 +187,48 @@ fn interrupt(queue: &mut StepQueue<64>, gate: &SafetyGate, registers: &Registers
     None
 }
 
+/// Late steps of both halves, with the main loop away for 20 ms in every 100 ms, up to 40,000 steps a second of
+/// each motor.
+fn in_two_halves(counter: &Counter) {
+    let mut memory = StepsAhead::<{ ahead::WORDS }>::new();
+    let memory = &mut memory;
+    let speed_mm_s = 40_000.0 / 87.58;
+    let exact = PlannerSettings {
+        speed_mm_s,
+        travel_speed_mm_s: speed_mm_s,
+        accel_mm_s2: 10_000.0,
+        ..PlannerSettings::default()
+    };
+    let path = PathMode::Tolerance { path_tolerance_mm: 0.05 };
+    let jerk_mm_s3 = Some(500_000.0);
+    for (mode, planner) in [
+        ("exact", exact),
+        ("tolerance", PlannerSettings { path, ..exact }),
+        ("s-curve", PlannerSettings { jerk_mm_s3, ..exact }),
+        ("tolerance s-curve", PlannerSettings { path, jerk_mm_s3, ..exact }),
+    ] {
+        let (mut plan, mut tick) = (Tally::default(), Tally::default());
+        for drawing in ["hatch", "spiral", "zigzag", "strokes"] {
+            let figures = match drawing {
+                "hatch" => ahead::draw(counter, planner, memory, || drawings::hatch().take(16)),
+                "spiral" => ahead::draw(counter, planner, memory, drawings::spiral),
+                "zigzag" => ahead::draw(counter, planner, memory, || drawings::zigzag().take(200)),
+                _ => ahead::draw(counter, planner, memory, || drawings::strokes().take(160)),
+            };
+            let ahead::Figures { steps, late, slowed, is_same, busy, ms, .. } = figures;
+            hprintln!(
+                "ahead {} {}: {} steps in {} ms, {} late, {} slowed, same {}, busy {} of 1000",
+                mode, drawing, steps, ms, late, slowed, is_same, busy
+            );
+            plan.join(figures.plan);
+            tick.join(figures.tick);
+        }
+        print(format_args!("ahead {mode} call of plan"), plan);
+        print(format_args!("ahead {mode} step interrupt"), tick);
+    }
+    hprintln!("ahead: {} bytes between the halves", size_of_val(memory));
+}
+
 #[entry]
 fn main() -> ! {
     let Some(peripherals) = cortex_m::Peripherals::take() else { loop {} };
@@ -235,6 +279,7 @@ fn main() -> ! {
         print("step reckoned", filled);
         print("step interrupt", made);
     }
+    in_two_halves(&counter);
     for (name, dust) in [("joint from 16 crossings", 0), ("joint with three grains of dust", 3)] {
         let (tally, silent) = joint::joints(&counter, dust);
         hprintln!("{}: {} of {} refused", name, silent, tally.count());

@@ -6,7 +6,7 @@ mod by_hand;
 mod work;
 
 #[cfg(feature = "step-ahead")]
-pub(super) use ahead::Made;
+pub(super) use ahead::{Made, whole_us};
 
 use super::homing_run::HomingRun;
 use super::play::{CLOCK_HZ, Play};

@@ -6,7 +6,7 @@
 //! brakes with exactly a, and where it curves it turns less hard than planned. Where more steps become known it
 //! speeds up again with a. Both sides count energies in units of [`Energy`].
 
-use crate::planner::{Phase, Shape};
+use crate::planner::Shape;
 use crate::{PlannerSettings, planner::AccelLimit};
 
 /// Energy that is braked away on a step with the greatest acceleration, in the units in which it is counted:
@@ -46,6 +46,11 @@ impl Energy {
     /// That of a speed.
     pub(super) fn at_speed(&self, speed_mm_s: f32) -> u32 {
         whole(0.5 * speed_mm_s * speed_mm_s * self.per_mm2_s2, MOST_ENERGY)
+    }
+
+    /// How long a machine goes on as planned on the way on which it could brake, us: v/2a.
+    pub(super) fn braking_us(&self, speed_mm_s: f32) -> u64 {
+        whole(5e5 * speed_mm_s / (BRAKES * self.accel_mm_s2), MOST_ENERGY).into()
     }
 
     /// What is braked away on each of some steps along a way.
@@ -93,13 +98,6 @@ impl Curve {
             Self::Corner => 0.0,
         }
     }
-}
-
-/// The phase of a path in which steps are made.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(in super::super) struct Stretch {
-    pub(in super::super) phase: Phase,
-    pub(in super::super) curve: Curve,
 }
 
 #[cfg(test)]

@@ -1,15 +1,16 @@
 //! [`Planning`]: the half in the main loop.
 
-use super::super::motion::Made;
+use super::super::motion::{Made, whole_us};
 use super::super::{
     Drivers, Host, Lateness, Receive, Signal, StartupLines, Status, StepperPlotter, StepperPlotterSettings,
     Stop, StoredSettings,
 };
-use super::energy::{Energy, Stretch as Phased};
+use super::energy::{Curve, Energy};
 use super::shared::{Found, In, Orders, StepsAhead};
 use super::words::{MOST_AFTER_US, MOST_WAIT_US, MOST_WORDS, Stretch, Word};
 use super::{Stepping, Underruns};
-use crate::planner::{AllModes, Modes};
+use crate::extremes::{greatest, least};
+use crate::planner::{AllModes, Modes, Phase};
 use crate::safety::Blocked;
 use crate::{Axis, Direction, StepPair, StepPoint};
 use core::sync::atomic::Ordering;
@@ -23,11 +24,14 @@ const ROOM: u32 = MOST_WORDS * (16 + 3);
 /// A stretch ends after this, us: what is braked away on it counts from step to step alike, though the speed
 /// changes; at 1000 mm/s² by 2 mm/s in that time.
 const STRETCH_US: u64 = 2_000;
-/// Events farther ahead than this are waited for. So no pause fills the memory.
-const FAR: Duration = Duration::from_secs(1);
+/// Events farther ahead than this are waited for, us: a second. So no pause fills the memory.
+const FAR_US: u64 = 1_000_000;
+/// With this more than it takes to brake a host is waited for that has sent too little to look ahead, us: some
+/// lines of a slow line, and a main loop that is away.
+const WAITS_US: u64 = 50_000;
 /// Most things that one call of [`Planning::plan`] puts in: its longest time is that of two stretches, and what
 /// the planner needs for a block.
-const MOST_PUT: u32 = 32;
+const MOST_PUT: usize = 32;
 
 /// Why all that waits is left out.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,40 +43,18 @@ enum Flush {
 }
 
 /// Steps that are still to be put in.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Gathered {
     /// Which motors, and how long after what was before, us.
     steps: [(StepPair, u64); STEPS],
     count: usize,
     ways: StepPair,
-    from_rest: bool,
-    phased: Phased,
-    /// Seconds of the phase at which they begin and end.
-    began_s: f32,
-    ends_s: f32,
+    /// The number of their phase, which begins with them.
+    stretch: u32,
+    begins: bool,
+    /// When what was before the first of them was due, and how long all of them take, us.
+    began_us: u64,
     us: u64,
-}
-
-impl Gathered {
-    const NONE: Self = Self {
-        steps: [(StepPair { x: 0, y: 0 }, 0); STEPS],
-        count: 0,
-        ways: StepPair { x: 1, y: 1 },
-        from_rest: false,
-        phased: Phased {
-            phase: crate::planner::Phase {
-                duration_s: 0.0,
-                from_mm: 0.0,
-                speed_mm_s: 0.0,
-                accel_mm_s2: 0.0,
-                jerk_mm_s3: 0.0,
-            },
-            curve: super::energy::Curve::Line,
-        },
-        began_s: 0.0,
-        ends_s: 0.0,
-        us: 0,
-    };
 }
 
 /// Plans ahead of the steps: the whole of a [`StepperPlotter`] but what makes them. For a main loop or a task
@@ -86,12 +68,16 @@ pub struct Planning<'a, H: Host = Receive, M: Modes = AllModes> {
     steps: In<'a>,
     energy: Energy,
     gathered: Gathered,
-    /// When what was put in last is due, as planned.
-    clock: Duration,
+    /// The phase of what was gathered last: when it began, us, itself, and how its path curves.
+    phase: (u64, Phase, Curve),
+    /// When what was put in last is due, as planned, us.
+    clock_us: u64,
     orders: Orders,
     /// What the other half has not heard of yet.
     waits_for: Option<Flush>,
     put_off_us: u32,
+    /// In this call something was planned without the lines that a host may still send.
+    is_behind: bool,
     pen_deg: u8,
     power: u16,
     was_dark: bool,
@@ -118,11 +104,13 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
             plotter: self,
             steps,
             energy,
-            gathered: Gathered::NONE,
-            clock: Duration::ZERO,
+            gathered: Gathered { ways: StepPair { x: 1, y: 1 }, ..Gathered::default() },
+            phase: (0, Phase::default(), Curve::Line),
+            clock_us: 0,
             orders,
             waits_for: None,
             put_off_us: 0,
+            is_behind: false,
             pen_deg,
             power: 0,
             was_dark: false,
@@ -155,85 +143,110 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
     /// is something for it, if that is armed for no time: [`Stepping::tick`].
     pub fn plan(&mut self, now: Duration) -> bool {
         self.look(now);
-        let mut put = 0;
-        while self.waits_for.is_none() && put < MOST_PUT {
-            if self.steps.room() < ROOM {
-                break;
-            }
-            let Some(at) = self.next_time(now) else { break };
-            let before = (self.plotter.link.commands.len(), self.pen_deg, self.power);
-            let made =
-                self.plotter.poll(at, Drivers::Ready).map(|step| (step.at, StepPair::from(step.pulse)));
-            put += 1;
-            self.put_others(at);
-            if self.plotter.motion.take_homed() {
-                self.flush(Flush::Homed);
-                self.order();
-                break;
-            }
-            if let Some((at, step)) = made {
-                self.gather(at, step);
-            } else if self.plotter.motion.event_at().is_none()
-                && before == (self.plotter.link.commands.len(), self.pen_deg, self.power)
-            {
-                self.put_gathered();
-                if self.plotter.motion.stands() {
-                    self.steps.tell_rest();
-                }
-                break;
-            }
-            self.look(now);
-        }
-        let more = put == MOST_PUT;
-        if !more {
+        self.is_behind = false;
+        let more = (0..MOST_PUT).all(|_| self.plan_one(now)) || self.is_behind;
+        if !more || self.is_behind {
             self.put_gathered();
         }
         self.end_call(now);
         more
     }
 
-    /// The time at which the motion side is to be asked next: that of the next event, if one is planned. At a
-    /// standstill it is asked at the time that it is, once all has really been done.
-    fn next_time(&mut self, now: Duration) -> Option<Duration> {
-        let is_drained = self.gathered.count == 0 && self.steps.is_drained();
+    /// Plans one thing, if there is one and room for it; says whether there may be more.
+    fn plan_one(&mut self, now: Duration) -> bool {
+        if self.waits_for.is_some() || self.steps.room() < ROOM {
+            return false;
+        }
+        let StepperPlotter { motion, link, .. } = &mut self.plotter;
+        if motion.waits_for_time() || (motion.has_ended() && link.commands.is_empty()) {
+            return self.is_at_rest() && self.ask(now);
+        }
+        let Some(at_us) = motion.event_us() else { return self.plan_more(now) };
+        if at_us.saturating_sub(self.clock_us) > FAR_US {
+            // A long pause, or hardly any speed at all.
+            if !self.is_at_rest() {
+                return false;
+            }
+            self.clock_us = whole_us(now);
+            if at_us.saturating_sub(self.clock_us) > FAR_US {
+                return false;
+            }
+        }
+        let StepperPlotter { motion, link, .. } = &mut self.plotter;
+        match motion.take_planned(link) {
+            Some(step) => self.gather(at_us, step),
+            None => self.put_others(at_us),
+        }
+        self.plotter.motion.note_given();
+        true
+    }
+
+    /// Asks the planner for more; says whether there may be.
+    fn plan_more(&mut self, now: Duration) -> bool {
+        if self.plotter.link.commands.is_empty() && self.plotter.motion.could_take_more() {
+            // A host that sends little by little: what is not taken from the planner yet can be planned anew.
+            let ahead_us = self.clock_us.saturating_sub(whole_us(now));
+            let enough_us = self.energy.braking_us(self.plotter.motion.speed_mm_s()).saturating_add(WAITS_US);
+            if !self.has_work_done(now) {
+                if self.steps.is_half_full() || ahead_us > enough_us {
+                    return false;
+                }
+                // One more, and then the host is heard first.
+                if core::mem::replace(&mut self.is_behind, true) {
+                    return false;
+                }
+            }
+        }
+        let StepperPlotter { motion, link, .. } = &mut self.plotter;
+        motion.plan_more(self.clock_us, link)
+            || if motion.has_ended() { self.is_at_rest() && self.ask(now) } else { self.has_work_done(now) }
+    }
+
+    /// Whether all has been made that was planned up to a standstill.
+    fn is_at_rest(&mut self) -> bool {
+        self.put_gathered();
+        self.steps.tell_rest();
+        self.steps.is_drained()
+    }
+
+    /// Whether the receive side has anything for the motion side.
+    fn has_work_done(&mut self, now: Duration) -> bool {
+        let before = self.plotter.link.commands.len();
+        self.plotter.work(now);
+        self.plotter.link.commands.len() > before
+    }
+
+    /// Asks the motion side what it does at this time, where it stands or homes.
+    fn ask(&mut self, now: Duration) -> bool {
         let motion = &mut self.plotter.motion;
-        if let Some(at) = motion.event_at() {
-            if at.saturating_sub(self.clock) < FAR {
-                return Some(at);
-            }
-            // A long pause, or hardly any speed at all: that is waited for.
-            if !is_drained {
-                self.put_gathered();
-                self.steps.tell_rest();
-                return None;
-            }
-            self.clock = now;
-            return (at.saturating_sub(now) < FAR).then_some(at);
+        // What has been put off puts off what waits for the end of a pause, too.
+        let put_off_us = self.steps.shared.put_off_us.load(Ordering::Acquire);
+        let more_us = put_off_us.wrapping_sub(core::mem::replace(&mut self.put_off_us, put_off_us));
+        motion.put_off(Duration::from_micros(more_us.into()));
+        motion.come_to_rest();
+        let (at, gap) = self.steps.made();
+        motion.note_made(Made { at, gap, stands: true });
+        self.clock_us = whole_us(now);
+        let before = (self.plotter.link.commands.len(), self.pen_deg, self.power);
+        let made = self.plotter.poll(now, Drivers::Ready).map(|step| (step.at, StepPair::from(step.pulse)));
+        self.put_others(self.clock_us);
+        if self.plotter.motion.take_homed() {
+            self.flush(Flush::Homed);
+            self.order();
+            return false;
         }
-        if motion.waits_for_time() || (is_drained && motion.stands()) {
-            if !is_drained {
-                self.put_gathered();
-                self.steps.tell_rest();
-                return None;
-            }
-            // What has been put off puts off what waits for the end of a pause, too.
-            let put_off_us = self.steps.shared.put_off_us.load(Ordering::Acquire);
-            let more_us = put_off_us.wrapping_sub(core::mem::replace(&mut self.put_off_us, put_off_us));
-            motion.put_off(Duration::from_micros(more_us.into()));
-            motion.come_to_rest();
-            self.clock = now;
-            return Some(now);
-        }
-        // A host that sends little by little: what is not taken from the planner yet can be planned anew.
-        if motion.could_take_more() && self.plotter.link.commands.is_empty() && self.steps.is_half_full() {
+        if let Some((at, step)) = made {
+            self.gather(whole_us(at), step);
             self.put_gathered();
-            return None;
+            self.plotter.motion.note_given();
+            return true;
         }
-        Some(self.clock)
+        !self.plotter.motion.waits_for_time()
+            || before != (self.plotter.link.commands.len(), self.pen_deg, self.power)
     }
 
     /// Puts in what servo and laser do, if that has changed.
-    fn put_others(&mut self, at: Duration) {
+    fn put_others(&mut self, at_us: u64) {
         let motion = &self.plotter.motion;
         let (pen_deg, power, is_dark) = (motion.pen_deg(), motion.beam().power(), motion.is_dark());
         let ends_darkness = core::mem::replace(&mut self.was_dark, is_dark) && !is_dark;
@@ -241,7 +254,8 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
             return;
         }
         self.put_gathered();
-        self.wait_until(at);
+        let us = self.after_us(at_us);
+        put_wait(&mut self.steps, us);
         if core::mem::replace(&mut self.pen_deg, pen_deg) != pen_deg {
             self.steps.put(Word::Pen(pen_deg));
         }
@@ -252,65 +266,61 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
     }
 
     /// How long after what was put in last this is, us.
-    fn after_us(&mut self, at: Duration) -> u64 {
-        let after = at.saturating_sub(self.clock);
-        self.clock = self.clock.max(at);
-        u64::try_from(after.as_micros()).unwrap_or(u64::MAX)
-    }
-
-    /// Puts in a wait; none is longer than [`FAR`].
-    fn wait_until(&mut self, at: Duration) {
-        let us = self.after_us(at);
-        put_wait(&mut self.steps, us);
+    fn after_us(&mut self, at_us: u64) -> u64 {
+        let after_us = at_us.saturating_sub(self.clock_us);
+        self.clock_us = self.clock_us.max(at_us);
+        after_us
     }
 
     /// Takes a step that is due at a time.
-    fn gather(&mut self, at: Duration, step: StepPair) {
-        let (began, phased, from_rest) = self.plotter.motion.phased();
-        let before = self.clock;
-        let us = self.after_us(at);
+    fn gather(&mut self, at_us: u64, step: StepPair) {
+        let began_us = self.clock_us;
+        let us = self.after_us(at_us);
+        let stretch = self.plotter.motion.stretch();
         let own = |way: i8, old: i8| way == 0 || way == old;
         let Gathered { ways, count, .. } = self.gathered;
         let goes_on = count > 0
             && count < STEPS
             && own(step.x, ways.x)
             && own(step.y, ways.y)
-            && phased == self.gathered.phased
-            && self.gathered.us.saturating_add(us) <= STRETCH_US;
-        let seconds = |at: Duration| at.saturating_sub(began).as_secs_f32().min(phased.phase.duration_s);
+            && stretch == self.gathered.stretch
+            && self.gathered.us + us <= STRETCH_US;
         if !goes_on {
             self.put_gathered();
             let way = |way: i8, old: i8| if way == 0 { old } else { way };
-            let is_new = phased != self.gathered.phased;
-            self.gathered = Gathered {
-                ways: StepPair { x: way(step.x, ways.x), y: way(step.y, ways.y) },
-                from_rest: from_rest && is_new,
-                phased,
-                began_s: if is_new { 0.0 } else { seconds(before) },
-                us: 0,
-                ..self.gathered
-            };
+            let gathered = &mut self.gathered;
+            gathered.ways = StepPair { x: way(step.x, ways.x), y: way(step.y, ways.y) };
+            gathered.begins = stretch != gathered.stretch;
+            (gathered.stretch, gathered.began_us, gathered.us) = (stretch, began_us, 0);
         }
         if let Some(slot) = self.gathered.steps.get_mut(self.gathered.count) {
             *slot = (step, us);
             self.gathered.count += 1;
         }
         self.gathered.us = self.gathered.us.saturating_add(us);
-        self.gathered.ends_s = seconds(at);
+        // Its phase is the one in progress only until the next is asked for.
+        self.phase = self.plotter.motion.phased();
     }
 
     /// Puts in what has been gathered, as one stretch.
     fn put_gathered(&mut self) {
-        let Gathered { count, ways, from_rest, phased, began_s, ends_s, .. } = self.gathered;
+        let Gathered { count, ways, begins, began_us, us, .. } = self.gathered;
         if count == 0 {
             return;
         }
-        let Phased { phase, curve } = phased;
-        let speeds = [phase.speed_at::<M>(began_s), phase.speed_at::<M>(ends_s)];
-        let fastest = crate::extremes::greatest(speeds[0], speeds[1]);
-        let way_mm = phase.way_mm::<M>(ends_s) - phase.way_mm::<M>(began_s);
+        let (phase_us, phase, curve) = self.phase;
+        let [from_s, to_s] = [began_us, began_us.saturating_add(us)].map(|at_us| {
+            // Not longer than a phase is, 47 ms, by far.
+            let us = u32::try_from(at_us.saturating_sub(phase_us)).unwrap_or(u32::MAX);
+            #[expect(clippy::cast_precision_loss, reason = "a time within a phase, to 2^-23")]
+            let seconds = us as f32 * 1e-6;
+            least(seconds, phase.duration_s)
+        });
+        let fastest = greatest(phase.speed_at::<M>(from_s), phase.speed_at::<M>(to_s));
+        let way_mm = phase.way_mm::<M>(to_s) - phase.way_mm::<M>(from_s);
         let steps = u16::try_from(count).unwrap_or(u16::MAX);
         let per_step = self.energy.per_step(curve, fastest, way_mm, steps);
+        let from_rest = begins && phase.speed_mm_s <= 0.0;
         if from_rest {
             self.steps.tell_rest();
         }
@@ -354,7 +364,7 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
             self.orders.homed = false;
             self.gathered.count = 0;
             self.steps.tell_rest();
-            self.clock = now;
+            self.clock_us = whole_us(now);
             let motion = &mut self.plotter.motion;
             motion.note_made(Made { at, gap, stands: true });
             motion.come_back_to(at, gap);
@@ -364,7 +374,7 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
                 Flush::Stop(why) => motion.stop_for(why, &mut self.plotter.link),
                 Flush::Homed => {}
             }
-            self.put_others(now);
+            self.put_others(self.clock_us);
         }
     }
 

@@ -102,7 +102,7 @@ impl<'a> Stepping<'a> {
     }
 
     /// The next step that is due by `now_us`, if there is one and the motors' drivers can take it. It counts as
-    /// made from here on.
+    /// made from here on, and [`due`](Self::due) tells when the next one is.
     pub fn tick(&mut self, now_us: u32, drivers: Drivers) -> Option<Pulse<'_>> {
         self.next_step(now_us, drivers).then_some(())?;
         let Thing::Step(step) = core::mem::replace(&mut self.thing, Thing::None) else { return None };
@@ -111,6 +111,8 @@ impl<'a> Stepping<'a> {
                 self.given(now_us);
                 self.made(pulse);
                 self.out.done();
+                // When the next one is due is known at once, so an interrupt is one call.
+                self.fetch(now_us);
                 Some(pulse)
             }
             Err(blocked) => {

@@ -1,11 +1,11 @@
 //! What the motion side does differently when it is asked for its steps ahead of their time.
 
-use super::super::ahead::energy::{Curve, Stretch};
+use super::super::ahead::energy::Curve;
 use super::super::play::Gap;
 use super::super::{Link, Stop};
 use super::{Motion, State};
 use crate::planner::{Action, Keep as _, Modes, Phase};
-use crate::safety::{Blocked, Pulse};
+use crate::stepgen::MotorEvent;
 use crate::{LimitSwitches, PlannerSettings, SafetyGate, StepPair, StepPoint};
 use core::time::Duration;
 
@@ -25,6 +25,8 @@ pub(super) struct Ahead {
     /// None while it is not.
     pub(super) made: Option<Made>,
     curve: Curve,
+    /// How many courses and phases there have been.
+    stretches: u32,
     /// All that is planned has been given; the motors are not there yet.
     ended: bool,
     has_homed: bool,
@@ -34,6 +36,7 @@ impl Ahead {
     /// Notes how the path goes on.
     pub(super) fn note(&mut self, action: &Action) {
         self.ended = false;
+        self.stretches = self.stretches.wrapping_add(1);
         if let Action::Course(course) = action {
             self.curve = Curve::of(&course.shape, course.length_mm);
         }
@@ -79,10 +82,31 @@ impl<M: Modes> Motion<M> {
         *self.planner.settings()
     }
 
-    /// When the next event is due that has been planned.
-    pub(in super::super) fn event_at(&self) -> Option<Duration> {
-        let event = self.next.filter(|_| self.state == State::Ready)?;
-        Some(self.time_of(event.tick))
+    /// When the next event is due of what is planned, us; none where the planner is to be asked first.
+    pub(in super::super) fn event_us(&mut self) -> Option<u64> {
+        if self.next.is_none() && !self.waits_for_time() {
+            self.next = self.next_event();
+        }
+        Some(whole_us(self.base).saturating_add(self.next?.tick))
+    }
+
+    /// Asks the planner for more, at the time of the last event; says whether there may be an event now.
+    pub(in super::super) fn plan_more(&mut self, clock_us: u64, link: &mut Link) -> bool {
+        !self.waits_for_time() && self.go_on(Duration::from_micros(clock_us), link)
+    }
+
+    /// Takes that event: a step, or something else that is done at once.
+    pub(in super::super) fn take_planned(&mut self, link: &mut Link) -> Option<StepPair> {
+        let event = self.next.take()?.event;
+        match event {
+            // Whether a limit switch is in its way is known at its time, to the gate of who makes it.
+            MotorEvent::Step(step) if !self.gate.is_stopped() => return Some(step),
+            MotorEvent::Step(_) => self.stop(Stop::Emergency, link),
+            _ => {
+                self.give(event, link);
+            }
+        }
+        None
     }
 
     /// Whether what it does next depends on what time it is: a machine that stands, or homes, or is stopped.
@@ -91,8 +115,8 @@ impl<M: Modes> Motion<M> {
     }
 
     /// Whether all that is planned has been given.
-    pub(in super::super) const fn stands(&self) -> bool {
-        self.at_rest || self.ahead.ended
+    pub(in super::super) const fn has_ended(&self) -> bool {
+        self.ahead.ended
     }
 
     /// The motors have come to where they were to.
@@ -113,15 +137,32 @@ impl<M: Modes> Motion<M> {
         !self.held && !self.cancelling && self.planner.has_room()
     }
 
-    /// The phase in which steps are made, when it began, and whether the machine stood then.
-    pub(in super::super) fn phased(&self) -> (Duration, Stretch, bool) {
+    /// The number of the phase in which steps are planned.
+    pub(in super::super) const fn stretch(&self) -> u32 {
+        self.ahead.stretches
+    }
+
+    /// How fast the machine is at the end of what is planned, mm/s.
+    pub(in super::super) fn speed_mm_s(&self) -> f32 {
+        self.phase.map_or(0.0, |(_, phase)| phase.speed_at::<M>(phase.duration_s))
+    }
+
+    /// That phase, and when it began, us.
+    pub(in super::super) fn phased(&self) -> (u64, Phase, Curve) {
         let (began, phase) = self.phase.unwrap_or((Duration::ZERO, Phase::default()));
-        (began, Stretch { phase, curve: self.ahead.curve }, phase.speed_mm_s <= 0.0)
+        (whole_us(began), phase, self.ahead.curve)
     }
 
     /// All that is to come is put off.
     pub(in super::super) fn put_off(&mut self, by: Duration) {
         self.base = self.base.saturating_add(by);
+    }
+
+    /// There is something for the motors to make.
+    pub(in super::super) const fn note_given(&mut self) {
+        if let Some(made) = &mut self.ahead.made {
+            made.stands = false;
+        }
     }
 
     pub(in super::super) const fn note_made(&mut self, made: Made) {
@@ -159,14 +200,10 @@ impl<M: Modes> Motion<M> {
             self.end_overrides();
         }
     }
+}
 
-    /// The way of a step that is given ahead of its time: what has been stopped gives none. Whether a limit
-    /// switch is in its way is known at its time, to the gate of who makes it.
-    pub(super) fn pass_ahead(&self, step: StepPair) -> Result<Pulse<'_>, Blocked> {
-        if self.ahead.made.is_some() && self.state == State::Ready && !self.gate.is_stopped() {
-            Ok(Pulse::planned(step))
-        } else {
-            self.gate.pass_step(step)
-        }
-    }
+/// A time in microseconds.
+pub(in super::super) fn whole_us(time: Duration) -> u64 {
+    // `as_micros` reckons with 128 bits.
+    time.as_secs().saturating_mul(1_000_000).saturating_add(time.subsec_micros().into())
 }

@@ -39,11 +39,7 @@ impl<M: Modes> Motion<M> {
 
     /// The one way of a step to the motors.
     pub(super) fn pass(&mut self, step: StepPair, link: &mut Link) -> Option<Pulse<'static>> {
-        #[cfg(feature = "step-ahead")]
-        let passed = self.pass_ahead(step);
-        #[cfg(not(feature = "step-ahead"))]
-        let passed = self.gate.pass_step(step);
-        match passed.map(Pulse::kept) {
+        match self.gate.pass_step(step).map(Pulse::kept) {
             Ok(pulse) => {
                 self.position.x = self.position.x.saturating_add(pulse.x().into());
                 self.position.y = self.position.y.saturating_add(pulse.y().into());
