@@ -14,6 +14,8 @@ mod a4988;
 mod axis;
 mod dependencies;
 mod estop_input;
+#[cfg(feature = "async")]
+mod executor;
 mod faulty;
 mod h_bridge;
 mod h_bridge_kinds;
@@ -25,4 +27,6 @@ mod pen_servo;
 mod prop_drivers;
 mod pulse_counter;
 mod quadrature;
+#[cfg(all(feature = "async", feature = "embedded-hal-nb", feature = "embedded-io-06"))]
+mod serial_halves;
 mod serial_line;
