@@ -110,7 +110,6 @@ impl<Pin: InputPin> EstopInput<Pin> {
 
 /// The pin of the emergency stop could not be read; it counts as pressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error<Pin> {
     /// The pin's own error.
@@ -125,3 +124,5 @@ impl<Pin: digital::Error> fmt::Display for Error<Pin> {
 }
 
 impl<Pin: digital::Error> core::error::Error for Error<Pin> {}
+
+crate::which_pin::formats_as_shown!(<Pin: digital::Error> Error<Pin>);

@@ -17,6 +17,7 @@ pub mod quadrature;
 pub mod serial_line;
 #[cfg(feature = "async")]
 mod waiting;
+mod which_pin;
 
 pub use a4988::A4988;
 pub use axis::{DcAxes, StepperAxes};

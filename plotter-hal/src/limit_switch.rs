@@ -77,7 +77,6 @@ impl<Pin: InputPin> LimitSwitch<Pin> {
 
 /// The pin of a switch could not be read; the switch counts as pressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error<Pin> {
     /// The pin's own error.
@@ -92,6 +91,8 @@ impl<Pin: digital::Error> fmt::Display for Error<Pin> {
 }
 
 impl<Pin: digital::Error> core::error::Error for Error<Pin> {}
+
+crate::which_pin::formats_as_shown!(<Pin: digital::Error> Error<Pin>);
 
 /// The switches at both ends of both axes.
 ///
@@ -128,9 +129,9 @@ pub struct LimitSwitchGroup<XMin, XMax, YMin, YMax> {
 impl<XMin, XMax, YMin, YMax> LimitSwitchGroup<XMin, XMax, YMin, YMax>
 where
     XMin: InputPin,
-    XMax: InputPin<Error = XMin::Error>,
-    YMin: InputPin<Error = XMin::Error>,
-    YMax: InputPin<Error = XMin::Error>,
+    XMax: InputPin,
+    YMin: InputPin,
+    YMax: InputPin,
 {
     /// Reads all four, whichever of them fails. Never waits.
     ///
@@ -138,12 +139,15 @@ where
     ///
     /// [`GroupError`] names the first switch whose pin could not be read. It counts as pressed in
     /// [`limits`](Self::limits), in which the others are up to date.
-    pub fn tick(&mut self, now: Duration) -> Result<LimitSwitches, GroupError<XMin::Error>> {
-        let at = |axis, end| move |Error::Pin(cause)| GroupError { axis, end, cause };
-        let x_min = self.x_min.tick(now).map_err(at(Axis::X, Direction::Minus));
-        let x_max = self.x_max.tick(now).map_err(at(Axis::X, Direction::Plus));
-        let y_min = self.y_min.tick(now).map_err(at(Axis::Y, Direction::Minus));
-        let y_max = self.y_max.tick(now).map_err(at(Axis::Y, Direction::Plus));
+    #[expect(clippy::type_complexity, reason = "an error type for each of the four pins")]
+    pub fn tick(
+        &mut self,
+        now: Duration,
+    ) -> Result<LimitSwitches, GroupError<XMin::Error, XMax::Error, YMin::Error, YMax::Error>> {
+        let x_min = self.x_min.tick(now).map_err(|Error::Pin(cause)| GroupError::XMin(cause));
+        let x_max = self.x_max.tick(now).map_err(|Error::Pin(cause)| GroupError::XMax(cause));
+        let y_min = self.y_min.tick(now).map_err(|Error::Pin(cause)| GroupError::YMin(cause));
+        let y_max = self.y_max.tick(now).map_err(|Error::Pin(cause)| GroupError::YMax(cause));
         Ok(LimitSwitches { x_min: x_min?, x_max: x_max?, y_min: y_min?, y_max: y_max? })
     }
 
@@ -164,27 +168,29 @@ where
     }
 }
 
-/// The pin of one of the four switches could not be read; that switch counts as pressed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct GroupError<Pin> {
-    /// Of which axis.
-    #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
-    pub axis: Axis,
-    /// At which of its ends.
-    #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
-    pub end: Direction,
-    /// The pin's own error.
-    pub cause: Pin,
+crate::which_pin::which_pin! {
+    /// The pin of one of the four switches could not be read; that switch counts as pressed.
+    GroupError: digital,
+    XMin "axis x: pin of its lower limit switch: {}; it counts as pressed",
+    XMax "axis x: pin of its upper limit switch: {}; it counts as pressed",
+    YMin "axis y: pin of its lower limit switch: {}; it counts as pressed",
+    YMax "axis y: pin of its upper limit switch: {}; it counts as pressed",
 }
 
-impl<Pin: digital::Error> fmt::Display for GroupError<Pin> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let axis = if self.axis == Axis::X { "x" } else { "y" };
-        let end = if self.end == Direction::Minus { "lower" } else { "upper" };
-        let cause = self.cause.kind();
-        write!(f, "axis {axis}: pin of its {end} limit switch: {cause}; it counts as pressed")
+impl<XMin, XMax, YMin, YMax> GroupError<XMin, XMax, YMin, YMax> {
+    /// Of which axis the switch is.
+    pub const fn axis(&self) -> Axis {
+        match self {
+            Self::XMin(_) | Self::XMax(_) => Axis::X,
+            Self::YMin(_) | Self::YMax(_) => Axis::Y,
+        }
+    }
+
+    /// At which of its ends.
+    pub const fn end(&self) -> Direction {
+        match self {
+            Self::XMin(_) | Self::YMin(_) => Direction::Minus,
+            Self::XMax(_) | Self::YMax(_) => Direction::Plus,
+        }
     }
 }
-
-impl<Pin: digital::Error> core::error::Error for GroupError<Pin> {}

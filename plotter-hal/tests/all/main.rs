@@ -24,6 +24,7 @@ mod late_loop;
 mod limit_switch;
 mod logic_analyser;
 mod pen_servo;
+mod pins_apart;
 mod prop_drivers;
 mod pulse_counter;
 mod quadrature;

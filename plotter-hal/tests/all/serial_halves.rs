@@ -229,9 +229,8 @@ fn a_byte_comes_when_it_comes_and_the_end_is_none() {
 
 #[test]
 fn a_port_that_fails_for_ever_gives_other_tasks_a_turn() {
-    let mut port = Port::default();
-    port.incoming = [Err(ErrorKind::Other); 100].into();
-    let mut rx = SerialRx::new(port);
+    let incoming = [Err(ErrorKind::Other); 100].into();
+    let mut rx = SerialRx::new(Port { incoming, ..Port::default() });
     let mut polls = Vec::new();
     for _ in 0..17 {
         let needed = (1..5).find(|&most| {
@@ -280,11 +279,7 @@ fn a_port_of_words_tells_the_kinds_of_faults_and_never_waits() {
     for (nb, io) in NB_KINDS {
         let mut line = SerialLine::new(NbPort::new(Broken(nb)));
         let seen = line.receive().and_then(|received| received.fault);
-        let mut io = SerialRx::new({
-            let mut port = Port::default();
-            port.incoming = [Err(io)].into();
-            port
-        });
+        let mut io = SerialRx::new(Port { incoming: [Err(io)].into(), ..Port::default() });
         assert_eq!(seen, block_on(io.received()).and_then(|received| received.fault), "{nb:?}");
     }
 }
