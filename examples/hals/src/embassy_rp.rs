@@ -1,13 +1,15 @@
 //! An RP2040 by embassy-rp.
 
+use core::time::Duration;
 use embassy_rp::gpio::{Input, Output};
 use embassy_rp::pwm::PwmOutput;
 use embassy_rp::uart::{Blocking, BufferedUart, BufferedUartRx, BufferedUartTx, UartRx, UartTx};
 use plotter_hal::a4988::Timing;
-use plotter_hal::serial_line::{Fault, NbPort, Received};
-use plotter_hal::{A4988, EstopInput, HBridge, Laser, Quadrature, SerialRx, SerialTx, StepperAxes, SwitchSettings};
 use plotter_hal::plotter_motion::{Axis, config::Decoding};
-use core::time::Duration;
+use plotter_hal::serial_line::{Fault, NbPort, Received};
+use plotter_hal::{
+    A4988, EstopInput, HBridge, Laser, Quadrature, SerialRx, SerialTx, StepperAxes, SwitchSettings,
+};
 
 /// The task that receives.
 pub async fn receive(rx: BufferedUartRx, mut take: impl FnMut(Received)) {
@@ -24,7 +26,11 @@ pub async fn send(tx: BufferedUartTx, next: impl FnMut() -> Option<u8>) -> Resul
 }
 
 /// Both halves without waiting: what is sent goes into the port's own buffer.
-pub fn poll(uart: BufferedUart, mut take: impl FnMut(Received), next: impl FnMut() -> Option<u8>) -> Result<(), Fault> {
+pub fn poll(
+    uart: BufferedUart,
+    mut take: impl FnMut(Received),
+    next: impl FnMut() -> Option<u8>,
+) -> Result<(), Fault> {
     let (tx, rx) = uart.split();
     let (mut tx, mut rx): (SerialTx<_, 8>, _) = (SerialTx::new(tx), SerialRx::new(rx));
     while let Some(received) = rx.receive() {
@@ -35,7 +41,10 @@ pub fn poll(uart: BufferedUart, mut take: impl FnMut(Received), next: impl FnMut
 }
 
 /// A port without a buffer.
-pub fn words(rx: UartRx<'static, Blocking>, tx: UartTx<'static, Blocking>) -> (Option<Received>, Result<(), Fault>) {
+pub fn words(
+    rx: UartRx<'static, Blocking>,
+    tx: UartTx<'static, Blocking>,
+) -> (Option<Received>, Result<(), Fault>) {
     let mut tx: SerialTx<_, 8> = SerialTx::new(tx);
     (SerialRx::new(NbPort::new(rx)).receive(), tx.write_queued())
 }

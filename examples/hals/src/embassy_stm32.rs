@@ -41,13 +41,19 @@ pub async fn send_by_dma(tx: UartTx<'static, Async>, next: impl FnMut() -> Optio
 }
 
 /// Both halves without waiting: what is sent goes into the port's own buffer.
-pub fn poll(rx: BufferedUartRx<'static>, tx: BufferedUartTx<'static>) -> (Option<Received>, Result<(), Fault>) {
+pub fn poll(
+    rx: BufferedUartRx<'static>,
+    tx: BufferedUartTx<'static>,
+) -> (Option<Received>, Result<(), Fault>) {
     let mut tx: SerialTx<_, 8> = SerialTx::new(tx);
     (SerialRx::new(rx).receive(), tx.write_queued())
 }
 
 /// A port without a buffer.
-pub fn words(rx: UartRx<'static, Blocking>, tx: UartTx<'static, Blocking>) -> (Option<Received>, Result<(), Fault>) {
+pub fn words(
+    rx: UartRx<'static, Blocking>,
+    tx: UartTx<'static, Blocking>,
+) -> (Option<Received>, Result<(), Fault>) {
     let mut tx: SerialTx<_, 8> = SerialTx::new(tx);
     (SerialRx::new(NbPort::new(rx)).receive(), tx.write_queued())
 }
