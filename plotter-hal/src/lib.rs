@@ -16,7 +16,7 @@ pub mod pulse_counter;
 pub mod quadrature;
 pub mod serial_line;
 #[cfg(feature = "async")]
-mod waiting;
+pub mod waiting;
 mod which_pin;
 
 pub use a4988::A4988;

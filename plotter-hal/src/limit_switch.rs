@@ -15,9 +15,13 @@
 
 use crate::SwitchSettings;
 use crate::debounce::Contact;
+#[cfg(feature = "async")]
+use crate::waiting::{First, first, turn, wait_until_due};
 use core::fmt;
 use core::time::Duration;
 use embedded_hal::digital::{self, InputPin};
+#[cfg(feature = "async")]
+use embedded_hal_async::{delay::DelayNs, digital::Wait};
 use plotter_motion::{Axis, Direction, LimitSwitches};
 
 /// One switch. Until it has shown for [`SwitchSettings::release_after`] that it is free, it counts as
@@ -72,6 +76,41 @@ impl<Pin: InputPin> LimitSwitch<Pin> {
     /// Gives the pin back.
     pub fn release(self) -> Pin {
         self.contact.release()
+    }
+}
+
+#[cfg(feature = "async")]
+impl<Pin: InputPin + Wait> LimitSwitch<Pin> {
+    /// Waits until the switch counts as pressed or no longer does, and says which. A press too short to be read
+    /// counts.
+    ///
+    /// Can be dropped at any time, as when something else comes first; what has been seen stays so.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Pin`]; the switch counts as pressed then.
+    pub async fn changed(
+        &mut self,
+        clock: impl Fn() -> Duration,
+        delay: &mut impl DelayNs,
+    ) -> Result<bool, Error<Pin::Error>> {
+        let was_pressed = self.is_pressed();
+        loop {
+            let read = self.tick(clock());
+            if read.is_err() {
+                // A pin that fails for ever does not keep other tasks for ever.
+                turn().await;
+            }
+            let is_pressed = read?;
+            if is_pressed != was_pressed {
+                return Ok(is_pressed);
+            }
+            let due = self.due();
+            let other = self.contact.shows_other(&clock);
+            if let First::A(Err(cause)) = first(other, wait_until_due(due, &clock, delay)).await {
+                return Err(Error::Pin(cause));
+            }
+        }
     }
 }
 
@@ -165,6 +204,52 @@ where
     pub fn due(&self) -> Option<Duration> {
         let due = [self.x_min.due(), self.x_max.due(), self.y_min.due(), self.y_max.due()];
         due.into_iter().flatten().min()
+    }
+}
+
+#[cfg(feature = "async")]
+impl<XMin, XMax, YMin, YMax> LimitSwitchGroup<XMin, XMax, YMin, YMax>
+where
+    XMin: InputPin + Wait,
+    XMax: InputPin + Wait,
+    YMin: InputPin + Wait,
+    YMax: InputPin + Wait,
+{
+    /// Waits until one of them counts as pressed or no longer does, and says what is pressed then: for the gate.
+    ///
+    /// Can be dropped at any time, as when something else comes first; what has been seen stays so.
+    ///
+    /// # Errors
+    ///
+    /// [`GroupError`] names the first switch whose pin could not be read. It counts as pressed in
+    /// [`limits`](Self::limits).
+    pub async fn changed(
+        &mut self,
+        clock: impl Fn() -> Duration,
+        delay: &mut impl DelayNs,
+    ) -> Result<LimitSwitches, GroupError<XMin::Error, XMax::Error, YMin::Error, YMax::Error>> {
+        let before = self.limits();
+        loop {
+            let read = self.tick(clock());
+            if read.is_err() {
+                // A pin that fails for ever does not keep other tasks for ever.
+                turn().await;
+            }
+            let limits = read?;
+            if limits != before {
+                return Ok(limits);
+            }
+            let due = self.due();
+            let x = first(self.x_min.contact.shows_other(&clock), self.x_max.contact.shows_other(&clock));
+            let y = first(self.y_min.contact.shows_other(&clock), self.y_max.contact.shows_other(&clock));
+            return Err(match first(first(x, y), wait_until_due(due, &clock, delay)).await {
+                First::A(First::A(First::A(Err(cause)))) => GroupError::XMin(cause),
+                First::A(First::A(First::B(Err(cause)))) => GroupError::XMax(cause),
+                First::A(First::B(First::A(Err(cause)))) => GroupError::YMin(cause),
+                First::A(First::B(First::B(Err(cause)))) => GroupError::YMax(cause),
+                First::A(_) | First::B(_) => continue,
+            });
+        }
     }
 }
 

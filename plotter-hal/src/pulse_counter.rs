@@ -73,6 +73,36 @@ impl<Pin: InputPin> PulseInput<Pin> {
     }
 }
 
+#[cfg(feature = "async")]
+impl<Pin: InputPin + embedded_hal_async::digital::Wait> PulseInput<Pin> {
+    /// Waits for a pulse. For shafts that turn slowly: each edge is a turn of the executor.
+    ///
+    /// Can be dropped at any time.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Pin`]; the position is as before.
+    pub async fn pulse(&mut self) -> Result<(), Error<Pin::Error>> {
+        loop {
+            match self.was_high {
+                None => {
+                    self.poll()?;
+                }
+                Some(true) => {
+                    self.pin.wait_for_low().await.map_err(Error::Pin)?;
+                    self.was_high = Some(false);
+                }
+                Some(false) => {
+                    self.pin.wait_for_high().await.map_err(Error::Pin)?;
+                    self.was_high = Some(true);
+                    self.counter.pulses(1);
+                    return Ok(());
+                }
+            }
+        }
+    }
+}
+
 /// What a hardware counter of 16 or 32 bits, which wraps, has counted since it was read last.
 ///
 /// Read it before it has gone all the way round: one of 16 bits at 100 000 pulses/s every 0.65 s.

@@ -23,8 +23,12 @@
 //! A lost phase cannot be told from a shaft that trembles about one edge, but that does not happen to one
 //! that is driven over more than a period: see [`lost_phase`](Quadrature::lost_phase).
 
+#[cfg(feature = "async")]
+use crate::waiting::{First, first};
 use core::fmt;
 use embedded_hal::digital::{self, InputPin};
+#[cfg(feature = "async")]
+use embedded_hal_async::digital::Wait;
 use plotter_motion::{
     Direction,
     config::Decoding,
@@ -189,6 +193,33 @@ where
             _ => 0,
         };
         self.alone = Some((phase, in_a_row.saturating_add(1)));
+    }
+}
+
+#[cfg(feature = "async")]
+impl<A: InputPin + Wait, B: InputPin + Wait> Quadrature<A, B> {
+    /// Waits until the shaft has gone on by a count. For shafts turned by hand: each edge is a turn of the executor.
+    /// Where edges come faster, let a timer count them.
+    ///
+    /// Can be dropped at any time.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Pin`]; the position is as before.
+    pub async fn counted(&mut self) -> Result<Direction, ErrorOf<A, B>> {
+        loop {
+            if let Some(direction) = self.poll()? {
+                return Ok(direction);
+            }
+            let Some((_, Phases { a, b })) = self.decoder else { continue };
+            let a = async { if a { self.a.wait_for_low().await } else { self.a.wait_for_high().await } };
+            let b = async { if b { self.b.wait_for_low().await } else { self.b.wait_for_high().await } };
+            match first(a, b).await {
+                First::A(waited) => waited.map_err(PinError::A),
+                First::B(waited) => waited.map_err(PinError::B),
+            }
+            .map_err(Error::Pin)?;
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use embassy_nrf::buffered_uarte::{BufferedUarteRx, BufferedUarteTx};
 use embassy_nrf::gpio::{Input, Output};
 use embassy_nrf::uarte::UarteTx;
 use plotter_hal::a4988::Timing;
+use plotter_hal::embedded_hal_async::delay::DelayNs;
 use plotter_hal::plotter_motion::{Axis, config::Decoding};
 use plotter_hal::serial_line::{Fault, Received};
 use plotter_hal::{A4988, EstopInput, Quadrature, SerialRx, SerialTx, StepperAxes, SwitchSettings};
@@ -37,10 +38,14 @@ pub fn steppers(x: [Output<'static>; 2], y: [Output<'static>; 2], enable: Output
     StepperAxes::new(x, y).start(Duration::ZERO).is_ok()
 }
 
-/// An encoder and a button.
-pub fn inputs(phases: [Input<'static>; 2], button: Input<'static>) -> bool {
-    let [a, b] = phases;
-    let mut encoder = Quadrature::new(a, b, Decoding::X4);
+/// Waits for a button and for a shaft that is turned by hand; the clock and the delay are the executor's.
+pub async fn inputs(
+    button: Input<'static>,
+    phases: [Input<'static>; 2],
+    clock: impl Fn() -> Duration,
+    delay: &mut impl DelayNs,
+) -> bool {
     let mut button = EstopInput::new(button, SwitchSettings::default());
-    encoder.poll().is_ok() && button.tick(Duration::ZERO).is_ok()
+    let [a, b] = phases;
+    button.changed(clock, delay).await.is_ok() && Quadrature::new(a, b, Decoding::X4).counted().await.is_ok()
 }

@@ -5,6 +5,7 @@ use embassy_rp::gpio::{Input, Output};
 use embassy_rp::pwm::PwmOutput;
 use embassy_rp::uart::{Blocking, BufferedUart, BufferedUartRx, BufferedUartTx, UartRx, UartTx};
 use plotter_hal::a4988::Timing;
+use plotter_hal::embedded_hal_async::delay::DelayNs;
 use plotter_hal::plotter_motion::{Axis, config::Decoding};
 use plotter_hal::serial_line::{Fault, NbPort, Received};
 use plotter_hal::{
@@ -62,6 +63,18 @@ pub fn motor(enable: PwmOutput<'static>, [a, b]: [Output<'static>; 2], phases: [
     let [phase_a, phase_b] = phases;
     let mut encoder = Quadrature::new(phase_a, phase_b, Decoding::X4);
     HBridge::new(Axis::X, enable, a, b).start().is_ok() && encoder.poll().is_ok()
+}
+
+/// Waits for a button and for a shaft that is turned by hand; the clock and the delay are the executor's.
+pub async fn inputs(
+    button: Input<'static>,
+    phases: [Input<'static>; 2],
+    clock: impl Fn() -> Duration,
+    delay: &mut impl DelayNs,
+) -> bool {
+    let mut button = EstopInput::new(button, SwitchSettings::default());
+    let [a, b] = phases;
+    button.changed(clock, delay).await.is_ok() && Quadrature::new(a, b, Decoding::X4).counted().await.is_ok()
 }
 
 /// A laser and the button that stops it.

@@ -8,6 +8,7 @@ use embassy_stm32::timer::GeneralInstance4Channel;
 use embassy_stm32::timer::simple_pwm::SimplePwmChannel;
 use embassy_stm32::usart::{BufferedUartRx, BufferedUartTx, RingBufferedUartRx, UartRx, UartTx};
 use plotter_hal::a4988::Timing;
+use plotter_hal::embedded_hal_async::delay::DelayNs;
 use plotter_hal::plotter_motion::{Axis, config::Decoding};
 use plotter_hal::serial_line::{Fault, NbPort, Received};
 use plotter_hal::{A4988, EstopInput, HBridge, Quadrature, SerialRx, SerialTx, StepperAxes, SwitchSettings};
@@ -77,7 +78,11 @@ pub fn motor<T: GeneralInstance4Channel>(
     HBridge::new(Axis::X, enable, a, b).start().is_ok() && encoder.poll().is_ok()
 }
 
-/// A button on a pin with an interrupt.
-pub fn button(button: ExtiInput<'static, Async>) -> bool {
-    EstopInput::new(button, SwitchSettings::default()).tick(Duration::ZERO).is_ok()
+/// Waits for a button on a pin with an interrupt; the clock and the delay are the executor's.
+pub async fn button(
+    button: ExtiInput<'static, Async>,
+    clock: impl Fn() -> Duration,
+    delay: &mut impl DelayNs,
+) -> bool {
+    EstopInput::new(button, SwitchSettings::default()).changed(clock, delay).await.is_ok()
 }

@@ -11,6 +11,8 @@
 )]
 
 mod a4988;
+#[cfg(feature = "async")]
+mod async_inputs;
 mod axis;
 mod dependencies;
 mod estop_input;
