@@ -14,6 +14,8 @@ mod a4988;
 #[cfg(feature = "async")]
 mod async_inputs;
 mod axis;
+#[cfg(feature = "defmt")]
+mod defmt_formats;
 mod dependencies;
 mod estop_input;
 #[cfg(feature = "async")]
