@@ -75,6 +75,7 @@ mod prop_marking_board;
 mod prop_motion;
 mod prop_planner;
 mod prop_protocol;
+mod prop_settings_bytes;
 mod prop_stepper_plotter;
 mod prop_testbed;
 mod prop_tuning;
