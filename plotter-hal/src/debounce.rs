@@ -105,9 +105,9 @@ impl<Pin> Contact<Pin> {
 
 #[cfg(feature = "async")]
 impl<Pin: InputPin + embedded_hal_async::digital::Wait> Contact<Pin> {
-    /// Waits until the pin shows something else than it did when it was read last, and says whether that is a press.
-    /// It counts as a look at the pin, so that what is over by the next one has been seen. Changes nothing when it
-    /// is dropped before.
+    /// Waits until the pin shows something else than it did when it was read last, and says whether that is a
+    /// press. It counts as a look at the pin, so that what is over by the next one has been seen. Changes
+    /// nothing when it is dropped before.
     pub(crate) async fn shows_other(&mut self, clock: &impl Fn() -> Duration) -> Result<bool, Pin::Error> {
         let shows_press = !self.debounce.showed_press();
         let is_high = self.debounce.shows_press(true) == shows_press;

@@ -13,15 +13,18 @@
 //! and its table. The thesis on the semi-virtual gantry wires it so, and runs the PWM at 2.5 kHz (sections
 //! 6.3, 6.7).
 //!
-//! Bridges of other kinds: [`Drv8871`] with a PWM on either input, [`Tb6612`] with a PWM, two inputs and a
-//! standby. What all have in common is a [`Bridge`]; [`DeadTime`] makes any of them wait before it reverses.
+//! Bridges of other kinds: [`Drv8871`] with a PWM on either input, [`Drv8833`] and [`Bts7960`] with that and
+//! a pin that switches them off, [`Tb6612`] with a PWM, two inputs and a standby. What all have in common is
+//! a [`Bridge`]; [`DeadTime`] makes any of them wait before it reverses.
 
 mod dead_time;
 mod drv8871;
+mod switched;
 mod tb6612;
 
 pub use dead_time::DeadTime;
 pub use drv8871::{Decay, Drv8871, InputError};
+pub use switched::{Bts7960, Drv8833, EnablePinError, SleepPinError};
 pub use tb6612::{Tb6612, Tb6612PinError};
 
 use core::fmt;

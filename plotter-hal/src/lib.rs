@@ -39,6 +39,6 @@ pub use limit_switch::{LimitSwitch, LimitSwitchGroup};
 pub use no_pin::NoPin;
 pub use pen_servo::{CheckedPenServo, PenServo, PenServoSettings, ServoPoint};
 pub use plotter_motion;
-pub use pulse_counter::{CounterDelta, PulseInput};
+pub use pulse_counter::{CounterDelta, PulseInput, TimerCount};
 pub use quadrature::Quadrature;
 pub use serial_line::{SerialLine, SerialRx, SerialTx};

@@ -81,8 +81,8 @@ impl<Pin: InputPin> LimitSwitch<Pin> {
 
 #[cfg(feature = "async")]
 impl<Pin: InputPin + Wait> LimitSwitch<Pin> {
-    /// Waits until the switch counts as pressed or no longer does, and says which. A press too short to be read
-    /// counts.
+    /// Waits until the switch counts as pressed or no longer does, and says which. A press too short to be
+    /// read counts.
     ///
     /// Can be dropped at any time, as when something else comes first; what has been seen stays so.
     ///
@@ -215,7 +215,8 @@ where
     YMin: InputPin + Wait,
     YMax: InputPin + Wait,
 {
-    /// Waits until one of them counts as pressed or no longer does, and says what is pressed then: for the gate.
+    /// Waits until one of them counts as pressed or no longer does, and says what is pressed then: for the
+    /// gate.
     ///
     /// Can be dropped at any time, as when something else comes first; what has been seen stays so.
     ///

@@ -198,8 +198,8 @@ where
 
 #[cfg(feature = "async")]
 impl<A: InputPin + Wait, B: InputPin + Wait> Quadrature<A, B> {
-    /// Waits until the shaft has gone on by a count. For shafts turned by hand: each edge is a turn of the executor.
-    /// Where edges come faster, let a timer count them.
+    /// Waits until the shaft has gone on by a count. For shafts turned by hand: each edge is a turn of the
+    /// executor. Where edges come faster, let a timer count them: [`TimerCount`](crate::TimerCount).
     ///
     /// Can be dropped at any time.
     ///

@@ -11,8 +11,8 @@
 //! its place the controller gets [`SUBSTITUTE`], for which both controllers of [`plotter_motion`] drop what
 //! it belongs to, and say so.
 //!
-//! [`SerialLine`] is on a port as a whole, [`SerialRx`] and [`SerialTx`] are on the halves of one. Which of them a
-//! chip's crate asks for, of those that are compiled with this one (`examples/hals`):
+//! [`SerialLine`] is on a port as a whole, [`SerialRx`] and [`SerialTx`] are on the halves of one. Which of
+//! them a chip's crate asks for, of those that are compiled with this one (`examples/hals`):
 //!
 //! | crate | port | |
 //! |---|---|---|

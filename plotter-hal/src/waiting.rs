@@ -8,11 +8,12 @@
 //! ```
 //!
 //! No driver knows a clock or an executor. A clock is a function that tells the time since the start, as in
-//! `|| Duration::from_micros(Instant::now().as_micros())` with embassy, and a delay is the executor's `DelayNs`.
-//! Switches, the emergency stop and encoders have forms that wait for their pins
-//! ([`LimitSwitch::changed`](crate::LimitSwitch::changed), [`EstopInput::changed`](crate::EstopInput::changed),
-//! [`Quadrature::counted`](crate::Quadrature::counted)). They wait for a *level*, never for an edge: an edge may come
-//! while nobody waits, and a level is still there. Each of them can be dropped at any time, and asked again.
+//! `|| Duration::from_micros(Instant::now().as_micros())` with embassy, and a delay is the executor's
+//! `DelayNs`. Switches, the emergency stop and encoders have forms that wait for their pins
+//! ([`LimitSwitch::changed`](crate::LimitSwitch::changed),
+//! [`EstopInput::changed`](crate::EstopInput::changed), [`Quadrature::counted`](crate::Quadrature::counted)).
+//! They wait for a *level*, never for an edge: an edge may come while nobody waits, and a level is still
+//! there. Each of them can be dropped at any time, and asked again.
 
 use core::future::{pending, poll_fn};
 use core::pin::pin;
@@ -20,10 +21,11 @@ use core::task::Poll;
 use core::time::Duration;
 use embedded_hal_async::delay::DelayNs;
 
-/// Comes back when it is `due`, with the time then. What is due never ([`None`]) never comes: wait for it together
-/// with what may happen before.
+/// Comes back when it is `due`, with the time then. What is due never ([`None`]) never comes: wait for it
+/// together with what may happen before.
 ///
-/// A delay that ends early by the clock is asked again, and one that is longer than it can be told is cut into pieces.
+/// A delay that ends early by the clock is asked again, and one that is longer than it can be told is cut
+/// into pieces.
 ///
 /// ```
 /// # use core::convert::Infallible;

@@ -1,9 +1,9 @@
-//! Errors that say which of a driver's pins failed: each pin has an error type of its own, because one may be the
-//! chip's and another on a port expander.
+//! Errors that say which of a driver's pins failed: each pin has an error type of its own, because one may be
+//! the chip's and another on a port expander.
 
-/// Makes the error of a driver's pins: a variant a pin, with that pin's own error. It is an error of `embedded-hal`
-/// itself, and shown by the name of the pin and the kind of its error, so nothing is asked of a chip's own error
-/// that `embedded-hal` does not ask.
+/// Makes the error of a driver's pins: a variant a pin, with that pin's own error. It is an error of
+/// `embedded-hal` itself, and shown by the name of the pin and the kind of its error, so nothing is asked of
+/// a chip's own error that `embedded-hal` does not ask.
 macro_rules! which_pin {
     ($(#[$doc:meta])* $name:ident: $hal:ident, $($pin:ident $text:literal),+ $(,)?) => {
         $(#[$doc])*
@@ -33,8 +33,8 @@ macro_rules! which_pin {
     };
 }
 
-/// `defmt` writes an error as people read it, by the kind of its cause: a derived form would ask a chip's own error
-/// to be one that `defmt` knows.
+/// `defmt` writes an error as people read it, by the kind of its cause: a derived form would ask a chip's own
+/// error to be one that `defmt` knows.
 macro_rules! formats_as_shown {
     (<$($bound:tt)*) => {
         crate::which_pin::formats_as_shown!(@ [] $($bound)*);

@@ -1,7 +1,7 @@
 //! The drivers of `plotter-hal` on the types of chips' crates: that they fit is shown by compiling it.
 //!
-//! Each module takes what its crate gives, and hands it to the drivers as a firmware does. `check` compiles each for
-//! its processor.
+//! Each module takes what its crate gives, and hands it to the drivers as a firmware does. `check` compiles
+//! each for its processor.
 #![no_std]
 
 #[cfg(feature = "embassy-nrf")]

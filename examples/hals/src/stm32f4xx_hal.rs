@@ -1,4 +1,5 @@
-//! An STM32F4 by stm32f4xx-hal, which has `embedded-io` 0.6 for what it sends, and nothing of it for what comes.
+//! An STM32F4 by stm32f4xx-hal, which has `embedded-io` 0.6 for what it sends, and nothing of it for what
+//! comes.
 
 use core::time::Duration;
 use plotter_hal::a4988::Timing;

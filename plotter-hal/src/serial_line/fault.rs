@@ -20,7 +20,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    pub(super) const fn of(kind: ErrorKind) -> Self {
+    pub(crate) const fn of(kind: ErrorKind) -> Self {
         match kind {
             ErrorKind::InvalidData => Self::Broken,
             ErrorKind::OutOfMemory => Self::Overrun,

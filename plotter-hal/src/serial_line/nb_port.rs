@@ -8,8 +8,8 @@ use embedded_io::{ErrorKind, ErrorType, Read, ReadReady, Write, WriteReady};
 /// `embedded-io` that never waits: with [`SerialLine`](super::SerialLine), [`SerialRx`](super::SerialRx) and
 /// [`SerialTx`](super::SerialTx).
 ///
-/// Its errors say which kind they are: an overrun is [`ErrorKind::OutOfMemory`]; framing, parity and noise are
-/// [`ErrorKind::InvalidData`]. A byte that the port could not take yet is kept here, and goes first.
+/// Its errors say which kind they are: an overrun is [`ErrorKind::OutOfMemory`]; framing, parity and noise
+/// are [`ErrorKind::InvalidData`]. A byte that the port could not take yet is kept here, and goes first.
 ///
 /// ```
 /// # use embedded_hal_nb::{nb, serial};

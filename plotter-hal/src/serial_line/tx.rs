@@ -11,8 +11,8 @@ use embedded_io::{Write, WriteReady};
 /// | has a blocking `Write` alone | [`queue`](Self::queue) in the loop, [`write_queued`](Self::write_queued) in the interrupt of a free transmitter, or where a byte's time does no harm | as the port does |
 /// | has an asynchronous `Write` (feature `async`) | `sent` | asynchronously |
 ///
-/// A byte is taken from its source when there is room for it here, and given up when the port has taken it: in no
-/// form is one lost or sent twice, whatever fails in between.
+/// A byte is taken from its source when there is room for it here, and given up when the port has taken it:
+/// in no form is one lost or sent twice, whatever fails in between.
 ///
 /// ```
 /// # use core::convert::Infallible;
@@ -56,8 +56,8 @@ impl<Port, const N: usize> SerialTx<Port, N> {
         Self { port, writing: Writing::new() }
     }
 
-    /// Takes what `next` gives, as much as there is room for; says how many bytes wait now. Asks nothing of the
-    /// port.
+    /// Takes what `next` gives, as much as there is room for; says how many bytes wait now. Asks nothing of
+    /// the port.
     pub fn queue(&mut self, next: impl FnMut() -> Option<u8>) -> usize {
         self.writing.fill(next);
         self.waiting()
@@ -106,13 +106,14 @@ impl<Port: Write + WriteReady, const N: usize> SerialTx<Port, N> {
 impl<Port: embedded_io_async::Write, const N: usize> SerialTx<Port, N> {
     /// Sends what waits and what `next` gives, and comes back when the port has taken all of it.
     ///
-    /// A future that is dropped before it is done has lost no byte and sent none twice, if the port's own `write`
-    /// is side-effect-free on cancel: those with a buffer behind an interrupt are. One that hands the bytes to DMA
-    /// is not; let it run to its end, in a task of its own.
+    /// A future that is dropped before it is done has lost no byte and sent none twice, if the port's own
+    /// `write` is side-effect-free on cancel: those with a buffer behind an interrupt are. One that hands the
+    /// bytes to DMA is not; let it run to its end, in a task of its own.
     ///
     /// # Errors
     ///
-    /// [`Fault`]; what was not taken is sent first the next time. A port that takes nothing is one that failed.
+    /// [`Fault`]; what was not taken is sent first the next time. A port that takes nothing is one that
+    /// failed.
     pub async fn sent(&mut self, mut next: impl FnMut() -> Option<u8>) -> Result<(), Fault> {
         loop {
             self.writing.fill(&mut next);

@@ -1,5 +1,5 @@
-//! Switches, button and encoders that are waited for: on pins whose levels are a list over simulated time, with an
-//! executor by hand, pins that fail, and futures that are dropped at any time.
+//! Switches, button and encoders that are waited for: on pins whose levels are a list over simulated time,
+//! with an executor by hand, pins that fail, and futures that are dropped at any time.
 
 use core::pin::{Pin, pin};
 use core::task::{Context, Poll, Waker};
@@ -314,8 +314,8 @@ fn pulses_are_counted_by_the_sign_of_the_drive() {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Waited for or looked at every quarter of a millisecond, and dropped at any time: a switch is never taken for free
-    /// before it has been free for its whole time, and a press is seen at once.
+    /// Waited for or looked at every quarter of a millisecond, and dropped at any time: a switch is never
+    /// taken for free before it has been free for its whole time, and a press is seen at once.
     #[test]
     fn a_switch_that_is_waited_for_is_one_that_is_looked_at(
         changes in prop::collection::vec((1..40_000_u64, any::<bool>()), 0..30),

@@ -1,4 +1,5 @@
-//! What a firmware prints with `defmt`: errors of drivers too whose pins have errors that `defmt` does not know.
+//! What a firmware prints with `defmt`: errors of drivers too whose pins have errors that `defmt` does not
+//! know.
 
 use embedded_hal::{digital, pwm};
 use plotter_hal::serial_line::{Fault, FaultCounts, Received};

@@ -1,4 +1,5 @@
-//! An executor by hand: a future is polled as often as a test says, or to its end, and can be dropped in between.
+//! An executor by hand: a future is polled as often as a test says, or to its end, and can be dropped in
+//! between.
 
 use core::pin::pin;
 use core::task::{Context, Poll, Waker};

@@ -1,5 +1,6 @@
-//! Pins of one driver that have errors of different types: some of the chip, which cannot fail, and some on a port
-//! expander, whose errors have nothing but what `embedded-hal` asks for. What fails is told, and the part is safe.
+//! Pins of one driver that have errors of different types: some of the chip, which cannot fail, and some on a
+//! port expander, whose errors have nothing but what `embedded-hal` asks for. What fails is told, and the
+//! part is safe.
 
 use core::convert::Infallible;
 use embedded_hal::digital::{self, InputPin, OutputPin};

@@ -1,5 +1,5 @@
-//! The halves of a serial port: on ports that only block, that are asynchronous, and of other traits; with faults,
-//! and with futures that are dropped at any time.
+//! The halves of a serial port: on ports that only block, that are asynchronous, and of other traits; with
+//! faults, and with futures that are dropped at any time.
 
 use crate::executor::{block_on, poll_at_most};
 use embedded_hal_nb::{nb, serial};
@@ -22,8 +22,8 @@ enum Does {
     Fails(ErrorKind),
 }
 
-/// A port with a buffer behind an interrupt: asynchronous, side-effect-free on cancel. Once it has done what it
-/// was told it moves a byte at a time.
+/// A port with a buffer behind an interrupt: asynchronous, side-effect-free on cancel. Once it has done what
+/// it was told it moves a byte at a time.
 #[derive(Debug, Default)]
 struct Port {
     does: VecDeque<Does>,
@@ -388,8 +388,8 @@ proptest! {
         prop_assert_eq!(received, bytes);
     }
 
-    /// A line of G-code over a bad cable, read by futures that are dropped all the time: it is drawn, or it is
-    /// refused as a whole and the machine stands.
+    /// A line of G-code over a bad cable, read by futures that are dropped all the time: it is drawn, or it
+    /// is refused as a whole and the machine stands.
     #[test]
     fn noise_and_dropped_readers_never_move_the_machine_elsewhere(
         broken in prop::collection::vec(any::<prop::sample::Index>(), 0..3),
