@@ -15,6 +15,7 @@ pub mod pen_servo;
 pub mod pulse_counter;
 pub mod quadrature;
 pub mod serial_line;
+pub mod tmc2209;
 #[cfg(feature = "async")]
 pub mod waiting;
 mod which_pin;
@@ -42,3 +43,4 @@ pub use plotter_motion;
 pub use pulse_counter::{CounterDelta, PulseInput, TimerCount};
 pub use quadrature::Quadrature;
 pub use serial_line::{SerialLine, SerialRx, SerialTx};
+pub use tmc2209::Tmc2209;

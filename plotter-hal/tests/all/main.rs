@@ -35,3 +35,4 @@ mod quadrature;
 #[cfg(all(feature = "async", feature = "embedded-hal-nb", feature = "embedded-io-06"))]
 mod serial_halves;
 mod serial_line;
+mod tmc2209;
