@@ -24,6 +24,8 @@ mod turn;
 mod whole;
 
 pub mod budget;
+#[cfg(feature = "build")]
+pub mod build;
 #[cfg(feature = "serde")]
 mod checked_serde;
 pub mod config;

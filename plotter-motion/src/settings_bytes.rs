@@ -6,11 +6,12 @@
 //! ```
 //!
 //! Numbers of two bytes have their low byte first. The check is CRC-16/X-25 (`crc` 3, catalogue name
-//! `CRC-16/IBM-SDLC`) over all that is before it: any fault within two bytes that lie side by side is found. A
-//! memory that nobody has written, or that has been erased, has no version that this could be.
+//! `CRC-16/IBM-SDLC`) over all that is before it: any fault within two bytes that lie side by side is found.
+//! A memory that nobody has written, or that has been erased, has no version that this could be.
 //!
 //! A firmware writes them when [`StepperPlotter::stored`] has changed, into another place than those before
-//! where a write may be cut off by the loss of power: what is damaged is refused, and the older ones still hold.
+//! where a write may be cut off by the loss of power: what is damaged is refused, and the older ones still
+//! hold.
 //!
 //! [`StepperPlotter::stored`]: crate::firmware::StepperPlotter::stored
 

@@ -48,6 +48,8 @@ mod hpgl_turned_frame;
 mod hpgl_writer;
 mod link_session;
 mod loaded_gantry;
+#[cfg(feature = "build")]
+mod machine_constants;
 mod marking;
 mod messages;
 mod papers;
