@@ -7,6 +7,7 @@ use plotter_hal::plotter_motion::{Axis, config::Decoding};
 use plotter_hal::serial_line::{Fault, NbPort, Received};
 use plotter_hal::{
     A4988, EstopInput, HBridge, Quadrature, SerialLine, SerialRx, SerialTx, StepperAxes, SwitchSettings,
+    Tmc2209, tmc2209,
 };
 use rp2040_hal::gpio::{DynPinId, FunctionSioInput, FunctionSioOutput, Pin, PullDown, PullUp};
 use rp2040_hal::pwm::{AnySlice, Channel, ChannelId};
@@ -43,6 +44,14 @@ pub fn words<D: UartDevice, P: ValidUartPinout<D>>(
 ) -> (Option<Received>, Result<(), Fault>) {
     let mut tx: SerialTx<_, 8> = SerialTx::new(NbPort::new(tx));
     (SerialRx::new(NbPort::new(rx)).receive(), tx.send(next))
+}
+
+/// A TMC2209 on a port of its own.
+pub fn chip<D: UartDevice, P: ValidUartPinout<D>>(
+    uart: UartPeripheral<Enabled, D, P>,
+    mut timer: Timer,
+) -> Result<(), tmc2209::Error> {
+    Tmc2209::new(uart, 0).configure(&tmc2209::Settings::default(), &mut timer)
 }
 
 /// Stepper motors.

@@ -7,6 +7,7 @@ use plotter_hal::plotter_motion::{Axis, config::Decoding};
 use plotter_hal::serial_line::{Fault, Io06Port, NbPort, Received};
 use plotter_hal::{
     A4988, EstopInput, HBridge, Quadrature, SerialLine, SerialRx, SerialTx, StepperAxes, SwitchSettings,
+    Tmc2209, tmc2209,
 };
 use stm32f4xx_hal::gpio::{ErasedPin, Input, Output};
 use stm32f4xx_hal::pac::{TIM1, USART2};
@@ -34,6 +35,11 @@ pub fn send(tx: Tx<USART2>, next: impl FnMut() -> Option<u8>) -> Result<(), Faul
     let mut tx: SerialTx<_> = SerialTx::new(Io06Port::new(tx));
     tx.queue(next);
     tx.write_queued()
+}
+
+/// A TMC2209 on a port of its own.
+pub fn chip(port: Serial<USART2>, mut delay: SysDelay) -> Result<(), tmc2209::Error> {
+    Tmc2209::new(NbPort::new(port), 0).configure(&tmc2209::Settings::default(), &mut delay)
 }
 
 /// Stepper motors.
