@@ -24,8 +24,9 @@ mod error;
 mod microsteps;
 mod timing;
 
-pub use error::Error;
-pub use microsteps::{Chip, MicrostepPins};
+pub use error::{Error, ErrorOf, PinError, PinErrorOf};
+use microsteps::MicrostepErrorOf;
+pub use microsteps::{Chip, MicrostepPinError, MicrostepPins};
 pub use timing::Timing;
 use timing::TimingNs;
 
@@ -106,7 +107,7 @@ enum Level {
     Unknown,
 }
 
-impl<Step: OutputPin, Dir> A4988<Step, Dir, NoPin<Step::Error>, NoPin<Step::Error>> {
+impl<Step, Dir> A4988<Step, Dir, NoPin, NoPin> {
     /// The motor of `axis`, on a board that has ENABLE and SLEEP wired so that the chip is always on. Leaves
     /// the pins as they are.
     #[inline(always)] // so that a chip's times become whole numbers while the program is compiled
@@ -115,8 +116,8 @@ impl<Step: OutputPin, Dir> A4988<Step, Dir, NoPin<Step::Error>, NoPin<Step::Erro
             axis,
             step,
             dir,
-            enable: NoPin::new(),
-            sleep: NoPin::new(),
+            enable: NoPin,
+            sleep: NoPin,
             has_enable: false,
             has_sleep: false,
             timing: timing.in_ns(),
@@ -242,9 +243,9 @@ impl<Step, Dir, Enable, Sleep> A4988<Step, Dir, Enable, Sleep> {
 impl<Step, Dir, Enable, Sleep> A4988<Step, Dir, Enable, Sleep>
 where
     Step: OutputPin,
-    Dir: OutputPin<Error = Step::Error>,
-    Enable: OutputPin<Error = Step::Error>,
-    Sleep: OutputPin<Error = Step::Error>,
+    Dir: OutputPin,
+    Enable: OutputPin,
+    Sleep: OutputPin,
 {
     /// Brings every pin into a known state, whatever was before: STEP low, awake, outputs on. The motor
     /// holds; the first step rises when the chip has woken up.
@@ -252,7 +253,7 @@ where
     /// # Errors
     ///
     /// [`Error::Busy`] within a pulse; otherwise [`Error::Pin`] or [`Error::StillOn`].
-    pub fn start(&mut self, now: Duration) -> Result<(), Error<Step::Error>> {
+    pub fn start(&mut self, now: Duration) -> Result<(), ErrorOf<Step, Dir, Enable, Sleep>> {
         self.can_start(now)?;
         self.halt();
         self.switch_on().map_err(|cause| self.after_pin(cause))?;
@@ -267,7 +268,10 @@ where
     /// # Errors
     ///
     /// As [`start`](Self::start), but never [`Error::Busy`].
-    pub fn start_blocking(&mut self, delay: &mut impl DelayNs) -> Result<(), Error<Step::Error>> {
+    pub fn start_blocking(
+        &mut self,
+        delay: &mut impl DelayNs,
+    ) -> Result<(), ErrorOf<Step, Dir, Enable, Sleep>> {
         self.settle(delay);
         self.start(Duration::ZERO)?;
         self.settle(delay);
@@ -286,7 +290,7 @@ where
     /// [`Error::Off`] before the start and after a stop or a fault; [`Error::Busy`] while another step is put
     /// off. The step has then not been taken. [`Error::Pin`] and [`Error::StillOn`] when a pin fails: steps
     /// may be lost.
-    pub fn step(&mut self, pulse: Pulse, now: Duration) -> Result<(), Error<Step::Error>> {
+    pub fn step(&mut self, pulse: Pulse, now: Duration) -> Result<(), ErrorOf<Step, Dir, Enable, Sleep>> {
         self.can_take(pulse)?;
         self.take(pulse);
         self.tick(now)
@@ -298,7 +302,7 @@ where
     /// # Errors
     ///
     /// [`Error::Pin`] and [`Error::StillOn`] when a pin fails.
-    pub fn tick(&mut self, now: Duration) -> Result<(), Error<Step::Error>> {
+    pub fn tick(&mut self, now: Duration) -> Result<(), ErrorOf<Step, Dir, Enable, Sleep>> {
         let now_ns = nanos(now);
         self.prepare(now_ns)?;
         if self.is_ready(now_ns) { self.rise(now_ns) } else { Ok(()) }
@@ -313,7 +317,7 @@ where
         &mut self,
         pulse: Pulse,
         delay: &mut impl DelayNs,
-    ) -> Result<(), Error<Step::Error>> {
+    ) -> Result<(), ErrorOf<Step, Dir, Enable, Sleep>> {
         self.can_take(pulse)?;
         self.take(pulse);
         self.settle(delay);
@@ -337,11 +341,11 @@ where
         pins: &mut MicrostepPins<Ms1, Ms2, Ms3>,
         microsteps: u16,
         now: Duration,
-    ) -> Result<(), Error<Step::Error>>
+    ) -> Result<(), Error<MicrostepErrorOf<Ms1, Ms2, Ms3>>>
     where
-        Ms1: OutputPin<Error = Step::Error>,
-        Ms2: OutputPin<Error = Step::Error>,
-        Ms3: OutputPin<Error = Step::Error>,
+        Ms1: OutputPin,
+        Ms2: OutputPin,
+        Ms3: OutputPin,
     {
         if let Some(until) = self.due() {
             return Err(Error::Busy { until });
@@ -360,13 +364,13 @@ where
     /// # Errors
     ///
     /// [`Error::Pin`] and [`Error::StillOn`] when a pin fails.
-    pub fn stop(&mut self) -> Result<(), Error<Step::Error>> {
+    pub fn stop(&mut self) -> Result<(), ErrorOf<Step, Dir, Enable, Sleep>> {
         self.on = false;
         self.waiting = None;
         let off = if self.has_enable {
-            self.enable.set_high()
+            self.enable.set_high().map_err(PinError::Enable)
         } else if self.has_sleep {
-            self.sleep.set_low()
+            self.sleep.set_low().map_err(PinError::Sleep)
         } else {
             Ok(())
         };
@@ -378,18 +382,18 @@ where
     /// # Errors
     ///
     /// As [`stop`](Self::stop).
-    pub fn sleep(&mut self) -> Result<(), Error<Step::Error>> {
+    pub fn sleep(&mut self) -> Result<(), ErrorOf<Step, Dir, Enable, Sleep>> {
         self.stop()?;
-        self.sleep.set_low().map_err(|cause| self.after_pin(cause))
+        self.sleep.set_low().map_err(|cause| self.after_pin(PinError::Sleep(cause)))
     }
 
     /// Whether no pulse is cut short by a start.
-    pub(crate) fn can_start(&self, now: Duration) -> Result<(), Error<Step::Error>> {
+    pub(crate) fn can_start(&self, now: Duration) -> Result<(), ErrorOf<Step, Dir, Enable, Sleep>> {
         if self.level != Level::Low && nanos(now) < self.earliest { Err(self.busy()) } else { Ok(()) }
     }
 
     /// Whether the motor's share of a pulse can be taken.
-    pub(crate) fn can_take(&self, pulse: Pulse) -> Result<(), Error<Step::Error>> {
+    pub(crate) fn can_take(&self, pulse: Pulse) -> Result<(), ErrorOf<Step, Dir, Enable, Sleep>> {
         match self.share(pulse) {
             Some(_) if !self.on => Err(Error::Off),
             Some(_) if self.waiting.is_some() => Err(self.busy()),
@@ -405,45 +409,45 @@ where
     }
 
     /// All that comes before STEP rises: it falls, and DIR changes.
-    pub(crate) fn prepare(&mut self, now_ns: u64) -> Result<(), Error<Step::Error>> {
+    pub(crate) fn prepare(&mut self, now_ns: u64) -> Result<(), ErrorOf<Step, Dir, Enable, Sleep>> {
         if self.level == Level::High && now_ns >= self.earliest {
-            self.step.set_low().map_err(|cause| self.after_pin(cause))?;
+            self.step.set_low().map_err(|cause| self.after_pin(PinError::Step(cause)))?;
             self.level = Level::Low;
             self.earliest = now_ns.saturating_add(self.timing.low.into());
         }
         if self.level == Level::Low && self.waiting.is_some() && self.waiting != self.direction {
-            self.turn().map_err(|cause| self.after_pin(cause))?;
+            self.turn().map_err(|cause| self.after_pin(PinError::Dir(cause)))?;
             self.earliest = self.earliest.max(now_ns.saturating_add(self.timing.setup.into()));
         }
         Ok(())
     }
 
-    pub(crate) fn rise(&mut self, now_ns: u64) -> Result<(), Error<Step::Error>> {
+    pub(crate) fn rise(&mut self, now_ns: u64) -> Result<(), ErrorOf<Step, Dir, Enable, Sleep>> {
         // DIR waits for STEP to fall, so the pulse lasts as long as DIR must hold.
         self.earliest = now_ns.saturating_add(self.timing.pulse.into());
-        self.step.set_high().map_err(|cause| self.after_pin(cause))?;
+        self.step.set_high().map_err(|cause| self.after_pin(PinError::Step(cause)))?;
         self.waiting = None;
         self.level = Level::High;
         Ok(())
     }
 
-    const fn busy(&self) -> Error<Step::Error> {
+    const fn busy<Pin>(&self) -> Error<Pin> {
         Error::Busy { until: Duration::from_nanos(self.earliest) }
     }
 
-    fn turn(&mut self) -> Result<(), Step::Error> {
+    fn turn(&mut self) -> Result<(), Dir::Error> {
         let plus = self.waiting == Some(Direction::Plus);
         self.dir.set_state(PinState::from(plus != self.inverted))?;
         self.direction = self.waiting;
         Ok(())
     }
 
-    fn switch_on(&mut self) -> Result<(), Step::Error> {
+    fn switch_on(&mut self) -> Result<(), PinErrorOf<Step, Dir, Enable, Sleep>> {
         // STEP first: no edge when the chip wakes.
-        self.step.set_low()?;
+        self.step.set_low().map_err(PinError::Step)?;
         self.level = Level::Low;
-        self.sleep.set_high()?;
-        self.enable.set_low()
+        self.sleep.set_high().map_err(PinError::Sleep)?;
+        self.enable.set_low().map_err(PinError::Enable)
     }
 
     fn settle(&mut self, delay: &mut impl DelayNs) {
@@ -460,7 +464,7 @@ where
     }
 
     /// A pin failed: no more steps, and no current if that can be had.
-    fn after_pin(&mut self, cause: Step::Error) -> Error<Step::Error> {
+    fn after_pin<Pin>(&mut self, cause: Pin) -> Error<Pin> {
         self.halt();
         if self.switch_off() { Error::Pin(cause) } else { Error::StillOn(cause) }
     }

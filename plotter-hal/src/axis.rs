@@ -22,22 +22,21 @@ use core::fmt;
 
 /// What failed at either motor, at one of them at least. Both have been stopped as far as this says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Error<E> {
+pub struct Error<X, Y = X> {
     /// At the first motor.
-    pub x: Option<E>,
+    pub x: Option<X>,
     /// At the second motor.
-    pub y: Option<E>,
+    pub y: Option<Y>,
 }
 
-impl<E> Error<E> {
+impl<X, Y> Error<X, Y> {
     /// Both have been tried.
-    fn check(x: Result<(), E>, y: Result<(), E>) -> Result<(), Self> {
+    fn check(x: Result<(), X>, y: Result<(), Y>) -> Result<(), Self> {
         if x.is_ok() && y.is_ok() { Ok(()) } else { Err(Self { x: x.err(), y: y.err() }) }
     }
 }
 
-impl<E: fmt::Display> fmt::Display for Error<E> {
+impl<X: fmt::Display, Y: fmt::Display> fmt::Display for Error<X, Y> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (&self.x, &self.y) {
             (Some(x), Some(y)) => write!(f, "axis x: {x}; axis y: {y}"),
@@ -48,4 +47,11 @@ impl<E: fmt::Display> fmt::Display for Error<E> {
     }
 }
 
-impl<E: fmt::Debug + fmt::Display> core::error::Error for Error<E> {}
+impl<X, Y> core::error::Error for Error<X, Y>
+where
+    X: fmt::Debug + fmt::Display,
+    Y: fmt::Debug + fmt::Display,
+{
+}
+
+crate::which_pin::formats_as_shown!(<X: fmt::Display, Y: fmt::Display> Error<X, Y>);

@@ -103,6 +103,28 @@ impl<Pin> Contact<Pin> {
     }
 }
 
+#[cfg(feature = "async")]
+impl<Pin: InputPin + embedded_hal_async::digital::Wait> Contact<Pin> {
+    /// Waits until the pin shows something else than it did when it was read last, and says whether that is a
+    /// press. It counts as a look at the pin, so that what is over by the next one has been seen. Changes
+    /// nothing when it is dropped before.
+    pub(crate) async fn shows_other(&mut self, clock: &impl Fn() -> Duration) -> Result<bool, Pin::Error> {
+        let shows_press = !self.debounce.showed_press();
+        let is_high = self.debounce.shows_press(true) == shows_press;
+        let waited = if is_high { self.pin.wait_for_high().await } else { self.pin.wait_for_low().await };
+        match waited {
+            Ok(()) => {
+                self.debounce.update(clock(), shows_press);
+                Ok(shows_press)
+            }
+            Err(cause) => {
+                self.debounce.unreadable();
+                Err(cause)
+            }
+        }
+    }
+}
+
 /// What is believed of a contact. Nothing is known of it at first: it counts as pressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Debounce {
@@ -120,6 +142,12 @@ impl Debounce {
     /// Whether this level of the pin is that of a pressed switch.
     fn shows_press(&self, is_high: bool) -> bool {
         PinState::from(is_high) == self.settings.pressed_at
+    }
+
+    /// What it has shown last. One that could not be read has shown a press.
+    #[cfg(feature = "async")]
+    const fn showed_press(&self) -> bool {
+        self.pressed != self.differs_since.is_some()
     }
 
     /// Takes what the contact shows now; says what is believed.

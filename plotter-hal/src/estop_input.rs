@@ -15,9 +15,13 @@
 
 use crate::SwitchSettings;
 use crate::debounce::Contact;
+#[cfg(feature = "async")]
+use crate::waiting::{First, first, turn, wait_until_due};
 use core::fmt;
 use core::time::Duration;
 use embedded_hal::digital::{self, InputPin};
+#[cfg(feature = "async")]
+use embedded_hal_async::{delay::DelayNs, digital::Wait};
 
 /// The button. Pressed until it has shown that it is not, so a machine that is switched on with its stop
 /// pressed, or with its wire cut, never starts.
@@ -84,12 +88,18 @@ impl<Pin: InputPin> EstopInput<Pin> {
         let was_pressed = self.is_pressed();
         let seen = self.contact.read(now);
         self.unpressed &= seen.as_ref().is_ok_and(|seen| !seen.shows_press);
-        Ok(match (was_pressed, seen.map_err(Error::Pin)?.is_pressed) {
+        seen.map_err(Error::Pin)?;
+        Ok(self.change(was_pressed))
+    }
+
+    /// What has become of it.
+    const fn change(&self, was_pressed: bool) -> Option<EstopChange> {
+        match (was_pressed, self.is_pressed()) {
             (false, true) => Some(EstopChange::Pressed),
             (true, false) if self.unpressed => Some(EstopChange::FreeSinceStart),
             (true, false) => Some(EstopChange::Released),
             (true, true) | (false, false) => None,
-        })
+        }
     }
 
     /// Whether the button counts as pressed, as of the last [`tick`](Self::tick).
@@ -108,9 +118,45 @@ impl<Pin: InputPin> EstopInput<Pin> {
     }
 }
 
+#[cfg(feature = "async")]
+impl<Pin: InputPin + Wait> EstopInput<Pin> {
+    /// Waits until something becomes of the button. A press too short to be read counts.
+    ///
+    /// Can be dropped at any time, as when something else comes first; what has been seen stays so, and
+    /// [`is_pressed`](Self::is_pressed) tells it to the gate.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Pin`]; the button counts as pressed then.
+    pub async fn changed(
+        &mut self,
+        clock: impl Fn() -> Duration,
+        delay: &mut impl DelayNs,
+    ) -> Result<EstopChange, Error<Pin::Error>> {
+        loop {
+            let read = self.tick(clock());
+            if read.is_err() {
+                // A pin that fails for ever does not keep other tasks for ever.
+                turn().await;
+            }
+            if let Some(change) = read? {
+                return Ok(change);
+            }
+            let (was_pressed, due) = (self.is_pressed(), self.due());
+            let other = self.contact.shows_other(&clock);
+            if let First::A(seen) = first(other, wait_until_due(due, &clock, delay)).await {
+                self.unpressed &= seen.as_ref().is_ok_and(|&shows_press| !shows_press);
+                seen.map_err(Error::Pin)?;
+                if let Some(change) = self.change(was_pressed) {
+                    return Ok(change);
+                }
+            }
+        }
+    }
+}
+
 /// The pin of the emergency stop could not be read; it counts as pressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error<Pin> {
     /// The pin's own error.
@@ -125,3 +171,5 @@ impl<Pin: digital::Error> fmt::Display for Error<Pin> {
 }
 
 impl<Pin: digital::Error> core::error::Error for Error<Pin> {}
+
+crate::which_pin::formats_as_shown!(<Pin: digital::Error> Error<Pin>);

@@ -13,16 +13,19 @@
 //! and its table. The thesis on the semi-virtual gantry wires it so, and runs the PWM at 2.5 kHz (sections
 //! 6.3, 6.7).
 //!
-//! Bridges of other kinds: [`Drv8871`] with a PWM on either input, [`Tb6612`] with a PWM, two inputs and a
-//! standby. What all have in common is a [`Bridge`]; [`DeadTime`] makes any of them wait before it reverses.
+//! Bridges of other kinds: [`Drv8871`] with a PWM on either input, [`Drv8833`] and [`Bts7960`] with that and
+//! a pin that switches them off, [`Tb6612`] with a PWM, two inputs and a standby. What all have in common is
+//! a [`Bridge`]; [`DeadTime`] makes any of them wait before it reverses.
 
 mod dead_time;
 mod drv8871;
+mod switched;
 mod tb6612;
 
 pub use dead_time::DeadTime;
-pub use drv8871::{Decay, Drv8871};
-pub use tb6612::Tb6612;
+pub use drv8871::{Decay, Drv8871, InputError};
+pub use switched::{Bts7960, Drv8833, EnablePinError, SleepPinError};
+pub use tb6612::{Tb6612, Tb6612PinError};
 
 use core::fmt;
 use embedded_hal::digital::{self, OutputPin};
@@ -115,11 +118,19 @@ pub struct HBridge<Enable, Forward, Reverse> {
     direction: Option<Direction>,
 }
 
+/// What can fail at a bridge on these pins.
+type ErrorOf<Enable, Forward, Reverse> = Error<
+    PinError<<Forward as digital::ErrorType>::Error, <Reverse as digital::ErrorType>::Error>,
+    <Enable as pwm::ErrorType>::Error,
+>;
+
+type Outcome<Enable, Forward, Reverse> = Result<(), ErrorOf<Enable, Forward, Reverse>>;
+
 impl<Enable, Forward, Reverse> HBridge<Enable, Forward, Reverse>
 where
     Enable: SetDutyCycle,
     Forward: OutputPin,
-    Reverse: OutputPin<Error = Forward::Error>,
+    Reverse: OutputPin,
 {
     /// The motor of `axis`, with the PWM on the bridge's enable pin. Leaves the pins as they are: call
     /// [`start`](Self::start) for a known state.
@@ -137,7 +148,7 @@ where
     /// # Errors
     ///
     /// [`Error`] if a pin or the PWM fails; it says what became of the motor.
-    pub fn start(&mut self) -> Result<(), Error<Forward::Error, Enable::Error>> {
+    pub fn start(&mut self) -> Outcome<Enable, Forward, Reverse> {
         self.coast()?;
         self.both_low().map_err(|cause| self.after_pin(cause))
     }
@@ -148,7 +159,7 @@ where
     /// # Errors
     ///
     /// [`Error`] if a pin or the PWM fails; it says what became of the motor.
-    pub fn drive(&mut self, drive: Drive) -> Result<(), Error<Forward::Error, Enable::Error>> {
+    pub fn drive(&mut self, drive: Drive) -> Outcome<Enable, Forward, Reverse> {
         let duty = drive.axis(self.axis);
         let Some(direction) = duty.direction() else { return self.coast() };
         if self.direction != Some(direction) {
@@ -164,7 +175,7 @@ where
     /// # Errors
     ///
     /// [`Error`] if the PWM fails; it says what became of the motor.
-    pub fn coast(&mut self) -> Result<(), Error<Forward::Error, Enable::Error>> {
+    pub fn coast(&mut self) -> Outcome<Enable, Forward, Reverse> {
         self.enable.set_duty_cycle_fully_off().map_err(|cause| self.after_pwm(cause))
     }
 
@@ -173,7 +184,7 @@ where
     /// # Errors
     ///
     /// [`Error`] if a pin or the PWM fails; it says what became of the motor.
-    pub fn brake(&mut self) -> Result<(), Error<Forward::Error, Enable::Error>> {
+    pub fn brake(&mut self) -> Outcome<Enable, Forward, Reverse> {
         self.coast()?;
         self.both_low().map_err(|cause| self.after_pin(cause))?;
         self.enable.set_duty_cycle_fully_on().map_err(|cause| self.after_pwm(cause))
@@ -185,17 +196,17 @@ where
     }
 
     /// Sets the direction pins; the duty has been taken away.
-    fn turn_to(&mut self, direction: Direction) -> Result<(), Forward::Error> {
+    fn turn_to(&mut self, direction: Direction) -> Result<(), PinError<Forward::Error, Reverse::Error>> {
         // Between the two pins the direction is neither.
         self.direction = None;
         match direction {
             Direction::Plus => {
-                self.reverse.set_low()?;
-                self.forward.set_high()?;
+                self.reverse.set_low().map_err(PinError::Reverse)?;
+                self.forward.set_high().map_err(PinError::Forward)?;
             }
             Direction::Minus => {
-                self.forward.set_low()?;
-                self.reverse.set_high()?;
+                self.forward.set_low().map_err(PinError::Forward)?;
+                self.reverse.set_high().map_err(PinError::Reverse)?;
             }
         }
         self.direction = Some(direction);
@@ -203,15 +214,18 @@ where
     }
 
     /// Both pins low, and the second one also when the first one fails.
-    fn both_low(&mut self) -> Result<(), Forward::Error> {
+    fn both_low(&mut self) -> Result<(), PinError<Forward::Error, Reverse::Error>> {
         self.direction = None;
-        let forward = self.forward.set_low();
-        let reverse = self.reverse.set_low();
+        let forward = self.forward.set_low().map_err(PinError::Forward);
+        let reverse = self.reverse.set_low().map_err(PinError::Reverse);
         forward.and(reverse)
     }
 
     /// A direction pin failed: makes sure of the duty.
-    fn after_pin(&mut self, cause: Forward::Error) -> Error<Forward::Error, Enable::Error> {
+    fn after_pin(
+        &mut self,
+        cause: PinError<Forward::Error, Reverse::Error>,
+    ) -> ErrorOf<Enable, Forward, Reverse> {
         self.direction = None;
         match self.enable.set_duty_cycle_fully_off() {
             Ok(()) => Error::Pin(cause),
@@ -221,7 +235,7 @@ where
 
     /// The PWM failed: tries it once more, and then takes the direction away, which stops a motor at any
     /// duty.
-    fn after_pwm(&mut self, cause: Enable::Error) -> Error<Forward::Error, Enable::Error> {
+    fn after_pwm(&mut self, cause: Enable::Error) -> ErrorOf<Enable, Forward, Reverse> {
         self.direction = None;
         if self.enable.set_duty_cycle_fully_off().is_ok() || self.both_low().is_ok() {
             Error::Pwm(cause)
@@ -235,9 +249,9 @@ impl<Enable, Forward, Reverse> Bridge for HBridge<Enable, Forward, Reverse>
 where
     Enable: SetDutyCycle,
     Forward: OutputPin,
-    Reverse: OutputPin<Error = Forward::Error>,
+    Reverse: OutputPin,
 {
-    type Error = Error<Forward::Error, Enable::Error>;
+    type Error = ErrorOf<Enable, Forward, Reverse>;
 
     fn axis(&self) -> Axis {
         self.axis
@@ -261,9 +275,13 @@ fn steps(duty: Duty, full: u16) -> u16 {
     u16::try_from(duty.steps(full).unsigned_abs()).map_or(full, |steps| steps.min(full))
 }
 
+crate::which_pin::which_pin! {
+    /// A direction pin of an [`HBridge`] failed.
+    PinError: digital, Forward "forward: {}", Reverse "reverse: {}"
+}
+
 /// A pin or the PWM of an H-bridge failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error<Pin, Pwm> {
     /// A direction pin failed; the duty was taken away, the motor has no supply across it.
@@ -274,11 +292,11 @@ pub enum Error<Pin, Pwm> {
     NotStopped(Pwm),
 }
 
-impl<Pin: digital::Error, Pwm: pwm::Error> fmt::Display for Error<Pin, Pwm> {
+impl<Pin: fmt::Display, Pwm: pwm::Error> fmt::Display for Error<Pin, Pwm> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Pin(cause) => {
-                write!(f, "direction pin of the h-bridge: {}; the duty is taken away", cause.kind())
+                write!(f, "direction pin of the h-bridge: {cause}; the duty is taken away")
             }
             Self::Pwm(cause) => write!(f, "pwm of the h-bridge: {}; the motor is stopped", cause.kind()),
             Self::NotStopped(cause) => {
@@ -292,7 +310,9 @@ impl<Pin: digital::Error, Pwm: pwm::Error> fmt::Display for Error<Pin, Pwm> {
     }
 }
 
-impl<Pin: digital::Error, Pwm: pwm::Error> core::error::Error for Error<Pin, Pwm> {}
+impl<Pin: fmt::Debug + fmt::Display, Pwm: pwm::Error> core::error::Error for Error<Pin, Pwm> {}
+
+crate::which_pin::formats_as_shown!(<Pin: fmt::Display, Pwm: pwm::Error> Error<Pin, Pwm>);
 
 #[cfg(test)]
 mod tests {

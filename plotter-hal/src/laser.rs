@@ -236,7 +236,6 @@ pub fn power_at_speed(power: u16, speed_mm_s: f32, full_speed_mm_s: f32) -> u16 
 
 /// The PWM of a laser failed. The beam is forgotten.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error<Pwm> {
     /// It failed once, and the laser was darkened at a second attempt.
@@ -257,6 +256,8 @@ impl<Pwm: pwm::Error> fmt::Display for Error<Pwm> {
 }
 
 impl<Pwm: pwm::Error> core::error::Error for Error<Pwm> {}
+
+crate::which_pin::formats_as_shown!(<Pwm: pwm::Error> Error<Pwm>);
 
 #[cfg(test)]
 mod tests {

@@ -15,9 +15,13 @@
 
 use crate::SwitchSettings;
 use crate::debounce::Contact;
+#[cfg(feature = "async")]
+use crate::waiting::{First, first, turn, wait_until_due};
 use core::fmt;
 use core::time::Duration;
 use embedded_hal::digital::{self, InputPin};
+#[cfg(feature = "async")]
+use embedded_hal_async::{delay::DelayNs, digital::Wait};
 use plotter_motion::{Axis, Direction, LimitSwitches};
 
 /// One switch. Until it has shown for [`SwitchSettings::release_after`] that it is free, it counts as
@@ -75,9 +79,43 @@ impl<Pin: InputPin> LimitSwitch<Pin> {
     }
 }
 
+#[cfg(feature = "async")]
+impl<Pin: InputPin + Wait> LimitSwitch<Pin> {
+    /// Waits until the switch counts as pressed or no longer does, and says which. A press too short to be
+    /// read counts.
+    ///
+    /// Can be dropped at any time, as when something else comes first; what has been seen stays so.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Pin`]; the switch counts as pressed then.
+    pub async fn changed(
+        &mut self,
+        clock: impl Fn() -> Duration,
+        delay: &mut impl DelayNs,
+    ) -> Result<bool, Error<Pin::Error>> {
+        let was_pressed = self.is_pressed();
+        loop {
+            let read = self.tick(clock());
+            if read.is_err() {
+                // A pin that fails for ever does not keep other tasks for ever.
+                turn().await;
+            }
+            let is_pressed = read?;
+            if is_pressed != was_pressed {
+                return Ok(is_pressed);
+            }
+            let due = self.due();
+            let other = self.contact.shows_other(&clock);
+            if let First::A(Err(cause)) = first(other, wait_until_due(due, &clock, delay)).await {
+                return Err(Error::Pin(cause));
+            }
+        }
+    }
+}
+
 /// The pin of a switch could not be read; the switch counts as pressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error<Pin> {
     /// The pin's own error.
@@ -92,6 +130,8 @@ impl<Pin: digital::Error> fmt::Display for Error<Pin> {
 }
 
 impl<Pin: digital::Error> core::error::Error for Error<Pin> {}
+
+crate::which_pin::formats_as_shown!(<Pin: digital::Error> Error<Pin>);
 
 /// The switches at both ends of both axes.
 ///
@@ -128,9 +168,9 @@ pub struct LimitSwitchGroup<XMin, XMax, YMin, YMax> {
 impl<XMin, XMax, YMin, YMax> LimitSwitchGroup<XMin, XMax, YMin, YMax>
 where
     XMin: InputPin,
-    XMax: InputPin<Error = XMin::Error>,
-    YMin: InputPin<Error = XMin::Error>,
-    YMax: InputPin<Error = XMin::Error>,
+    XMax: InputPin,
+    YMin: InputPin,
+    YMax: InputPin,
 {
     /// Reads all four, whichever of them fails. Never waits.
     ///
@@ -138,12 +178,15 @@ where
     ///
     /// [`GroupError`] names the first switch whose pin could not be read. It counts as pressed in
     /// [`limits`](Self::limits), in which the others are up to date.
-    pub fn tick(&mut self, now: Duration) -> Result<LimitSwitches, GroupError<XMin::Error>> {
-        let at = |axis, end| move |Error::Pin(cause)| GroupError { axis, end, cause };
-        let x_min = self.x_min.tick(now).map_err(at(Axis::X, Direction::Minus));
-        let x_max = self.x_max.tick(now).map_err(at(Axis::X, Direction::Plus));
-        let y_min = self.y_min.tick(now).map_err(at(Axis::Y, Direction::Minus));
-        let y_max = self.y_max.tick(now).map_err(at(Axis::Y, Direction::Plus));
+    #[expect(clippy::type_complexity, reason = "an error type for each of the four pins")]
+    pub fn tick(
+        &mut self,
+        now: Duration,
+    ) -> Result<LimitSwitches, GroupError<XMin::Error, XMax::Error, YMin::Error, YMax::Error>> {
+        let x_min = self.x_min.tick(now).map_err(|Error::Pin(cause)| GroupError::XMin(cause));
+        let x_max = self.x_max.tick(now).map_err(|Error::Pin(cause)| GroupError::XMax(cause));
+        let y_min = self.y_min.tick(now).map_err(|Error::Pin(cause)| GroupError::YMin(cause));
+        let y_max = self.y_max.tick(now).map_err(|Error::Pin(cause)| GroupError::YMax(cause));
         Ok(LimitSwitches { x_min: x_min?, x_max: x_max?, y_min: y_min?, y_max: y_max? })
     }
 
@@ -164,27 +207,76 @@ where
     }
 }
 
-/// The pin of one of the four switches could not be read; that switch counts as pressed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct GroupError<Pin> {
-    /// Of which axis.
-    #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
-    pub axis: Axis,
-    /// At which of its ends.
-    #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
-    pub end: Direction,
-    /// The pin's own error.
-    pub cause: Pin,
-}
-
-impl<Pin: digital::Error> fmt::Display for GroupError<Pin> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let axis = if self.axis == Axis::X { "x" } else { "y" };
-        let end = if self.end == Direction::Minus { "lower" } else { "upper" };
-        let cause = self.cause.kind();
-        write!(f, "axis {axis}: pin of its {end} limit switch: {cause}; it counts as pressed")
+#[cfg(feature = "async")]
+impl<XMin, XMax, YMin, YMax> LimitSwitchGroup<XMin, XMax, YMin, YMax>
+where
+    XMin: InputPin + Wait,
+    XMax: InputPin + Wait,
+    YMin: InputPin + Wait,
+    YMax: InputPin + Wait,
+{
+    /// Waits until one of them counts as pressed or no longer does, and says what is pressed then: for the
+    /// gate.
+    ///
+    /// Can be dropped at any time, as when something else comes first; what has been seen stays so.
+    ///
+    /// # Errors
+    ///
+    /// [`GroupError`] names the first switch whose pin could not be read. It counts as pressed in
+    /// [`limits`](Self::limits).
+    pub async fn changed(
+        &mut self,
+        clock: impl Fn() -> Duration,
+        delay: &mut impl DelayNs,
+    ) -> Result<LimitSwitches, GroupError<XMin::Error, XMax::Error, YMin::Error, YMax::Error>> {
+        let before = self.limits();
+        loop {
+            let read = self.tick(clock());
+            if read.is_err() {
+                // A pin that fails for ever does not keep other tasks for ever.
+                turn().await;
+            }
+            let limits = read?;
+            if limits != before {
+                return Ok(limits);
+            }
+            let due = self.due();
+            let x = first(self.x_min.contact.shows_other(&clock), self.x_max.contact.shows_other(&clock));
+            let y = first(self.y_min.contact.shows_other(&clock), self.y_max.contact.shows_other(&clock));
+            return Err(match first(first(x, y), wait_until_due(due, &clock, delay)).await {
+                First::A(First::A(First::A(Err(cause)))) => GroupError::XMin(cause),
+                First::A(First::A(First::B(Err(cause)))) => GroupError::XMax(cause),
+                First::A(First::B(First::A(Err(cause)))) => GroupError::YMin(cause),
+                First::A(First::B(First::B(Err(cause)))) => GroupError::YMax(cause),
+                First::A(_) | First::B(_) => continue,
+            });
+        }
     }
 }
 
-impl<Pin: digital::Error> core::error::Error for GroupError<Pin> {}
+crate::which_pin::which_pin! {
+    /// The pin of one of the four switches could not be read; that switch counts as pressed.
+    GroupError: digital,
+    XMin "axis x: pin of its lower limit switch: {}; it counts as pressed",
+    XMax "axis x: pin of its upper limit switch: {}; it counts as pressed",
+    YMin "axis y: pin of its lower limit switch: {}; it counts as pressed",
+    YMax "axis y: pin of its upper limit switch: {}; it counts as pressed",
+}
+
+impl<XMin, XMax, YMin, YMax> GroupError<XMin, XMax, YMin, YMax> {
+    /// Of which axis the switch is.
+    pub const fn axis(&self) -> Axis {
+        match self {
+            Self::XMin(_) | Self::XMax(_) => Axis::X,
+            Self::YMin(_) | Self::YMax(_) => Axis::Y,
+        }
+    }
+
+    /// At which of its ends.
+    pub const fn end(&self) -> Direction {
+        match self {
+            Self::XMin(_) | Self::YMin(_) => Direction::Minus,
+            Self::XMax(_) | Self::YMax(_) => Direction::Plus,
+        }
+    }
+}

@@ -584,7 +584,6 @@ impl<Pwm> core::error::Error for Refused<Pwm> {
 
 /// The PWM of a pen's servo failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error<Pwm> {
     /// The PWM's own error. The pen is where the last pulse has it, and does not count as settled.
@@ -599,6 +598,8 @@ impl<Pwm: pwm::Error> fmt::Display for Error<Pwm> {
 }
 
 impl<Pwm: pwm::Error> core::error::Error for Error<Pwm> {}
+
+crate::which_pin::formats_as_shown!(<Pwm: pwm::Error> Error<Pwm>);
 
 #[cfg(test)]
 mod tests {

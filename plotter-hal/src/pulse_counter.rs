@@ -3,7 +3,7 @@
 //! It counts up, and the sign of the voltage that the motor gets, or got last, says which way that is: the
 //! logic, and what it cannot see, are [`PulseCounter`]'s. Use [`PulseInput`] where the program sees the edges
 //! itself, from an interrupt or polled at least twice in a half of a period; and [`CounterDelta`] where a
-//! timer counts them.
+//! timer counts them. [`TimerCount`] is for a timer that counts both phases of an encoder, forth and back.
 
 use core::fmt;
 use embedded_hal::digital::{self, InputPin};
@@ -73,6 +73,36 @@ impl<Pin: InputPin> PulseInput<Pin> {
     }
 }
 
+#[cfg(feature = "async")]
+impl<Pin: InputPin + embedded_hal_async::digital::Wait> PulseInput<Pin> {
+    /// Waits for a pulse. For shafts that turn slowly: each edge is a turn of the executor.
+    ///
+    /// Can be dropped at any time.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Pin`]; the position is as before.
+    pub async fn pulse(&mut self) -> Result<(), Error<Pin::Error>> {
+        loop {
+            match self.was_high {
+                None => {
+                    self.poll()?;
+                }
+                Some(true) => {
+                    self.pin.wait_for_low().await.map_err(Error::Pin)?;
+                    self.was_high = Some(false);
+                }
+                Some(false) => {
+                    self.pin.wait_for_high().await.map_err(Error::Pin)?;
+                    self.was_high = Some(true);
+                    self.counter.pulses(1);
+                    return Ok(());
+                }
+            }
+        }
+    }
+}
+
 /// What a hardware counter of 16 or 32 bits, which wraps, has counted since it was read last.
 ///
 /// Read it before it has gone all the way round: one of 16 bits at 100 000 pulses/s every 0.65 s.
@@ -116,9 +146,49 @@ impl CounterDelta<u32> {
     }
 }
 
-/// The pin of a pulse encoder could not be read.
+/// The position of a two-phase encoder that a timer counts by itself, forth and back, in 16 bits that wrap:
+/// timers of the STM32 in encoder mode, PIO of the RP2040, QDEC of the nRF52.
+///
+/// Read it before the shaft can have gone half the way round, 32,767 counts: at 200 000 counts/s every 0.16
+/// s. Farther than that it cannot be told from the other way.
+///
+/// ```
+/// # use plotter_hal::TimerCount;
+/// let mut encoder = TimerCount::new(65_530); // what the timer shows now is the origin
+/// assert_eq!(encoder.update(4), 10); // it has wrapped: ten counts forth
+/// assert_eq!(encoder.update(65_526), -14); // and fourteen back
+/// assert_eq!(encoder.position(), -4);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct TimerCount {
+    last: u16,
+    position: i32,
+}
+
+impl TimerCount {
+    /// The encoder, at 0 where the timer shows `count`.
+    pub const fn new(count: u16) -> Self {
+        Self { last: count, position: 0 }
+    }
+
+    /// Takes what the timer shows now; gives the counts since the last time, with their sign: those that a
+    /// controller takes as edges.
+    pub const fn update(&mut self, count: u16) -> i16 {
+        let moved = count.wrapping_sub(self.last).cast_signed();
+        self.last = count;
+        self.position = self.position.wrapping_add(moved as i32);
+        moved
+    }
+
+    /// Where the shaft is, counts from where it was first seen. Wraps at the ends of `i32`.
+    pub const fn position(&self) -> i32 {
+        self.position
+    }
+}
+
+/// The pin of a pulse encoder could not be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Error<Pin> {
     /// The pin's own error.
@@ -133,3 +203,5 @@ impl<Pin: digital::Error> fmt::Display for Error<Pin> {
 }
 
 impl<Pin: digital::Error> core::error::Error for Error<Pin> {}
+
+crate::which_pin::formats_as_shown!(<Pin: digital::Error> Error<Pin>);

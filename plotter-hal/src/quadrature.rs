@@ -23,8 +23,12 @@
 //! A lost phase cannot be told from a shaft that trembles about one edge, but that does not happen to one
 //! that is driven over more than a period: see [`lost_phase`](Quadrature::lost_phase).
 
+#[cfg(feature = "async")]
+use crate::waiting::{First, first};
 use core::fmt;
 use embedded_hal::digital::{self, InputPin};
+#[cfg(feature = "async")]
+use embedded_hal_async::digital::Wait;
 use plotter_motion::{
     Direction,
     config::Decoding,
@@ -100,10 +104,13 @@ pub enum Phase {
     B,
 }
 
+/// What can fail at an encoder on these pins.
+type ErrorOf<A, B> = Error<PinError<<A as digital::ErrorType>::Error, <B as digital::ErrorType>::Error>>;
+
 impl<A, B> Quadrature<A, B>
 where
     A: InputPin,
-    B: InputPin<Error = A::Error>,
+    B: InputPin,
 {
     /// The encoder on pins `a` and `b`. The pins are first read by [`poll`](Self::poll).
     pub const fn new(a: A, b: B, decoding: Decoding) -> Self {
@@ -115,10 +122,10 @@ where
     /// # Errors
     ///
     /// [`Error::Pin`]; the encoder is then as if this call had not been made.
-    pub fn poll(&mut self) -> Result<Option<Direction>, Error<A::Error>> {
-        let phases =
-            Phases { a: self.a.is_high().map_err(Error::Pin)?, b: self.b.is_high().map_err(Error::Pin)? };
-        Ok(self.update(phases))
+    pub fn poll(&mut self) -> Result<Option<Direction>, ErrorOf<A, B>> {
+        let a = self.a.is_high().map_err(|cause| Error::Pin(PinError::A(cause)))?;
+        let b = self.b.is_high().map_err(|cause| Error::Pin(PinError::B(cause)))?;
+        Ok(self.update(Phases { a, b }))
     }
 
     /// Takes the levels of both pins as read elsewhere; says whether the shaft went on by a count.
@@ -189,20 +196,53 @@ where
     }
 }
 
+#[cfg(feature = "async")]
+impl<A: InputPin + Wait, B: InputPin + Wait> Quadrature<A, B> {
+    /// Waits until the shaft has gone on by a count. For shafts turned by hand: each edge is a turn of the
+    /// executor. Where edges come faster, let a timer count them: [`TimerCount`](crate::TimerCount).
+    ///
+    /// Can be dropped at any time.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Pin`]; the position is as before.
+    pub async fn counted(&mut self) -> Result<Direction, ErrorOf<A, B>> {
+        loop {
+            if let Some(direction) = self.poll()? {
+                return Ok(direction);
+            }
+            let Some((_, Phases { a, b })) = self.decoder else { continue };
+            let a = async { if a { self.a.wait_for_low().await } else { self.a.wait_for_high().await } };
+            let b = async { if b { self.b.wait_for_low().await } else { self.b.wait_for_high().await } };
+            match first(a, b).await {
+                First::A(waited) => waited.map_err(PinError::A),
+                First::B(waited) => waited.map_err(PinError::B),
+            }
+            .map_err(Error::Pin)?;
+        }
+    }
+}
+
+crate::which_pin::which_pin! {
+    /// Which pin of an encoder could not be read.
+    PinError: digital, A "phase A: {}", B "phase B: {}"
+}
+
 /// A pin of an encoder could not be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error<Pin> {
     /// The pin's own error.
     Pin(Pin),
 }
 
-impl<Pin: digital::Error> fmt::Display for Error<Pin> {
+impl<Pin: fmt::Display> fmt::Display for Error<Pin> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self::Pin(cause) = self;
-        write!(f, "pin of the encoder: {}", cause.kind())
+        write!(f, "pin of the encoder: {cause}")
     }
 }
 
-impl<Pin: digital::Error> core::error::Error for Error<Pin> {}
+impl<Pin: fmt::Debug + fmt::Display> core::error::Error for Error<Pin> {}
+
+crate::which_pin::formats_as_shown!(<Pin: fmt::Display> Error<Pin>);

@@ -1,4 +1,4 @@
-//! A serial port between a host and a controller without I/O, one byte at a time and without waiting.
+//! A serial port between a host and a controller without I/O: without waiting, or asynchronously.
 //!
 //! ```text
 //!  port ──▶ receive ──byte──────────────▶ controller.receive(now, byte)
@@ -10,12 +10,45 @@
 //! A byte that came broken is not data, and leaving it out is no better: `G1 X12` would become `G1 X1`. In
 //! its place the controller gets [`SUBSTITUTE`], for which both controllers of [`plotter_motion`] drop what
 //! it belongs to, and say so.
+//!
+//! [`SerialLine`] is on a port as a whole, [`SerialRx`] and [`SerialTx`] are on the halves of one. Which of
+//! them a chip's crate asks for, of those that are compiled with this one (`examples/hals`):
+//!
+//! | crate | port | |
+//! |---|---|---|
+//! | embassy-rp, embassy-stm32 | halves of `BufferedUart` | `received` and `sent`, feature `async`; `receive` too |
+//! | embassy-nrf | halves of `BufferedUarte` | the same |
+//! | embassy-stm32 | `RingBufferedUartRx`; `UartTx` with DMA, not to be cancelled | `received`; `sent` |
+//! | rp2040-hal | `UartPeripheral`, `Reader`, `Writer` | `SerialLine`, `receive`, `send` |
+//! | stm32f4xx-hal | `Rx`, `Tx` in an `NbPort`, feature `embedded-hal-nb` | `SerialLine`, `receive`, `send` |
+//! | with `embedded-io` 0.6 | in an `Io06Port`, feature `embedded-io-06` | as its traits have it |
+//!
+//! An `NbPort` also tells the kinds of faults apart where a crate's `embedded-io` calls all of them other, as
+//! rp2040-hal, stm32f4xx-hal and embassy-rp do.
 
-use core::fmt;
-use embedded_io::{Error as _, ErrorKind, Read, ReadReady, Write, WriteReady};
+mod fault;
+#[cfg(feature = "embedded-io-06")]
+mod io_06_port;
+#[cfg(feature = "embedded-hal-nb")]
+mod nb_port;
+mod rx;
+mod tx;
+
+pub use fault::{Fault, FaultCounts};
+#[cfg(feature = "embedded-io-06")]
+pub use io_06_port::Io06Port;
+#[cfg(feature = "embedded-hal-nb")]
+pub use nb_port::NbPort;
+pub use rx::{Received, SerialRx};
+pub use tx::SerialTx;
+
+use embedded_io::{Read, ReadReady, Write, WriteReady};
+#[cfg(doc)]
 use plotter_motion::protocol::SUBSTITUTE;
+use rx::Reading;
+use tx::Writing;
 
-/// A serial port.
+/// A serial port, both directions of it.
 ///
 /// ```
 /// # use core::convert::Infallible;
@@ -79,129 +112,20 @@ use plotter_motion::protocol::SUBSTITUTE;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SerialLine<Port> {
     port: Port,
-    faults: FaultCounts,
-    /// Faults since a good byte.
-    in_a_row: u8,
+    reading: Reading,
     /// A byte that the port did not take.
-    unsent: Option<u8>,
-}
-
-/// After so many faults without a good byte [`SerialLine::receive`] gives nothing once: a port that fails for
-/// ever must not keep its reader for ever.
-const MOST_IN_A_ROW: u8 = 8;
-
-/// A byte for the controller.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Received {
-    /// The byte, or [`SUBSTITUTE`] if there was a fault.
-    pub byte: u8,
-    /// What was wrong with it.
-    pub fault: Option<Fault>,
-}
-
-/// What was wrong with a serial port. `embedded-io` has few kinds of errors, and chips' crates use them
-/// differently: what they call other may be any of these.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum Fault {
-    /// A byte came broken: framing, parity or noise ([`ErrorKind::InvalidData`]).
-    Broken,
-    /// Bytes came faster than they were read, and were lost ([`ErrorKind::OutOfMemory`]).
-    Overrun,
-    /// The other end has gone: an unplugged USB port, say.
-    Gone,
-    /// Something else.
-    Other,
-}
-
-impl Fault {
-    fn of(kind: ErrorKind) -> Self {
-        match kind {
-            ErrorKind::InvalidData => Self::Broken,
-            ErrorKind::OutOfMemory => Self::Overrun,
-            ErrorKind::BrokenPipe
-            | ErrorKind::ConnectionAborted
-            | ErrorKind::ConnectionReset
-            | ErrorKind::NotConnected => Self::Gone,
-            _ => Self::Other,
-        }
-    }
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Broken => "a byte came broken (framing, parity or noise): check baud rate and ground",
-            Self::Overrun => "bytes came faster than they were read, and were lost",
-            Self::Gone => "the other end has gone",
-            Self::Other => "the port failed",
-        })
-    }
-}
-
-impl core::error::Error for Fault {}
-
-/// How many faults there have been, of each kind.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct FaultCounts {
-    /// [`Fault::Broken`].
-    pub broken: u32,
-    /// [`Fault::Overrun`].
-    pub overrun: u32,
-    /// [`Fault::Gone`].
-    pub gone: u32,
-    /// [`Fault::Other`].
-    pub other: u32,
-}
-
-impl FaultCounts {
-    fn count(&mut self, fault: Fault) {
-        let count = match fault {
-            Fault::Broken => &mut self.broken,
-            Fault::Overrun => &mut self.overrun,
-            Fault::Gone => &mut self.gone,
-            Fault::Other => &mut self.other,
-        };
-        *count = count.saturating_add(1);
-    }
+    writing: Writing<1>,
 }
 
 impl<Port: Read + ReadReady + Write + WriteReady> SerialLine<Port> {
     /// The line on `port`.
     pub const fn new(port: Port) -> Self {
-        let faults = FaultCounts { broken: 0, overrun: 0, gone: 0, other: 0 };
-        Self { port, faults, in_a_row: 0, unsent: None }
+        Self { port, reading: Reading::new(), writing: Writing::new() }
     }
 
     /// The next byte for the controller, if one has come. Never waits.
     pub fn receive(&mut self) -> Option<Received> {
-        if self.in_a_row >= MOST_IN_A_ROW {
-            self.in_a_row = 0;
-            return None;
-        }
-        let mut byte = [0];
-        let read = match self.port.read_ready() {
-            Ok(false) => Ok(0),
-            Ok(true) => self.port.read(&mut byte),
-            Err(error) => Err(error),
-        };
-        match read {
-            // Nothing there, or the port has been closed.
-            Ok(0) => None,
-            Ok(_) => {
-                self.in_a_row = 0;
-                let [byte] = byte;
-                Some(Received { byte, fault: None })
-            }
-            Err(error) => {
-                self.in_a_row += 1;
-                let fault = self.fault(&error);
-                Some(Received { byte: SUBSTITUTE, fault: Some(fault) })
-            }
-        }
+        self.reading.receive(&mut self.port)
     }
 
     /// Sends what `next` gives, as much as the port takes now. Never waits; asks for no byte before there is
@@ -210,36 +134,17 @@ impl<Port: Read + ReadReady + Write + WriteReady> SerialLine<Port> {
     /// # Errors
     ///
     /// [`Fault`]; a byte that was not taken is sent first the next time.
-    pub fn send(&mut self, mut next: impl FnMut() -> Option<u8>) -> Result<(), Fault> {
-        loop {
-            match self.port.write_ready() {
-                Ok(true) => {}
-                Ok(false) => return Ok(()),
-                Err(error) => return Err(self.fault(&error)),
-            }
-            self.unsent = self.unsent.or_else(&mut next);
-            let Some(byte) = self.unsent else { return Ok(()) };
-            match self.port.write(&[byte]) {
-                Ok(0) => return Ok(()),
-                Ok(_) => self.unsent = None,
-                Err(error) => return Err(self.fault(&error)),
-            }
-        }
+    pub fn send(&mut self, next: impl FnMut() -> Option<u8>) -> Result<(), Fault> {
+        self.writing.send(&mut self.port, next)
     }
 
     /// How many faults there have been in both directions.
     pub const fn faults(&self) -> FaultCounts {
-        self.faults
+        self.reading.faults.and(self.writing.faults)
     }
 
     /// Gives the port back.
     pub fn release(self) -> Port {
         self.port
-    }
-
-    fn fault(&mut self, error: &Port::Error) -> Fault {
-        let fault = Fault::of(error.kind());
-        self.faults.count(fault);
-        fault
     }
 }

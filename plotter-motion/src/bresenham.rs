@@ -15,6 +15,7 @@ use crate::StepPoint;
 /// What both motors do at one time: each a step forwards (1), a step back (-1) or none (0); never none of
 /// both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct StepPair {
     /// First motor: -1, 0 or 1.
     pub x: i8,

@@ -12,6 +12,7 @@ use core::ops::{Add, AddAssign, Mul, Neg, Sub};
 
 /// A place on the sheet, in mm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Point {
     /// To the right, mm.

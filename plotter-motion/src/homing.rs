@@ -96,6 +96,7 @@ impl HomingAxis {
 /// Steps between the two switches of each axis, the lower one touched downwards and the upper one upwards:
 /// with any play of the axis in it once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Homed {
     /// Of x.
     pub x_steps: u32,
@@ -105,6 +106,7 @@ pub struct Homed {
 
 /// A step that homing asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct HomingStep {
     /// Which motor.
     pub axis: Axis,
@@ -134,6 +136,7 @@ impl From<HomingStep> for StepPair {
 
 /// Where homing is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum HomingStatus {
     /// It wants a step.
     Step(HomingStep),
@@ -145,6 +148,7 @@ pub enum HomingStatus {
 
 /// Why homing gave up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum HomingError {
     /// A switch did not come.

@@ -24,6 +24,8 @@ mod turn;
 mod whole;
 
 pub mod budget;
+#[cfg(feature = "build")]
+pub mod build;
 #[cfg(feature = "serde")]
 mod checked_serde;
 pub mod config;
@@ -43,6 +45,7 @@ pub mod plant;
 pub mod profile;
 pub mod protocol;
 pub mod safety;
+pub mod settings_bytes;
 pub mod stepgen;
 pub mod testbed;
 pub mod toolpath;

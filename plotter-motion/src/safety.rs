@@ -94,10 +94,12 @@ use core::marker::PhantomData;
 
 /// Share of the supply on a motor, with the sign of the direction: -1.0 to 1.0, checked once when made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Duty(f32);
 
 /// A duty outside -1.0 to 1.0, or not a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct DutyError {
     /// The value refused.
     pub value: f32,
@@ -173,6 +175,7 @@ impl Duty {
 
 /// What a controller asks of both motors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Demand {
     /// First motor.
     pub x: Duty,
@@ -188,6 +191,7 @@ impl Demand {
 /// What both motors get: made by [`SafetyGate::pass`] only. It ends when its gate is told anything; the
 /// default is none at all.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Drive<'gate> {
     x: Duty,
     y: Duty,
@@ -236,6 +240,7 @@ const fn drive(x: Duty, y: Duty) -> Drive<'static> {
 /// A step of either motor or of both that may be made: by [`SafetyGate::pass_step`] only. It ends when its
 /// gate is told anything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Pulse<'gate> {
     x: i8,
     y: i8,
@@ -274,6 +279,7 @@ const fn pulse(step: StepPair) -> Pulse<'static> {
 /// Power of a laser, in 65535ths, that may be switched on: by [`SafetyGate::pass_laser`] only. It ends when
 /// its gate is told anything; the default is off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Beam<'gate> {
     power: u16,
     gate: PhantomData<&'gate SafetyGate>,
@@ -297,6 +303,7 @@ impl Beam<'_> {
 
 /// Why a step may not be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Blocked {
     /// The emergency stop is latched, or the host has stopped the machine.
@@ -326,6 +333,7 @@ impl core::error::Error for Blocked {}
 
 /// Which limit switches are pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LimitSwitches {
     /// At the left end.
     pub x_min: bool,

@@ -12,6 +12,7 @@ use crate::whole::nearest;
 
 /// Position of both motors, in microsteps or encoder counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StepPoint {
     /// First motor.

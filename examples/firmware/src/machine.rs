@@ -1,10 +1,8 @@
-//! The machine, as constants: `build.rs` reads `examples/machines/*.toml` on the host and checks them there.
-
-#![allow(
-    unused_imports,
-    clippy::unreadable_literal,
-    clippy::excessive_precision,
-    reason = "written by build.rs for either controller; floats as their shortest text"
-)]
+//! The machines, as constants: `build.rs` reads `examples/machines/*.toml` on the host and checks them there.
 
 include!(concat!(env!("OUT_DIR"), "/machine.rs"));
+
+pub use gantry::{BAUD, DECODING, Gantry, PWM_STEPS, X, Y, gantry};
+pub use stepper_plotter::{
+    BAUD as PLOTTER_BAUD, CHECKED as CHECKED_PLOTTER, LASER, SETTINGS as PLOTTER, StepperPlotter,
+};

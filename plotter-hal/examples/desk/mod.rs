@@ -126,7 +126,7 @@ pub(crate) fn motors() -> (Motors, [Line; 2]) {
 }
 
 /// A motor, and both.
-type Motor = A4988<Line, Line, NoPin<Infallible>, NoPin<Infallible>>;
+type Motor = A4988<Line, Line, NoPin, NoPin>;
 pub(crate) type Motors = StepperAxes<Motor, Motor>;
 
 /// A serial port at 115200 baud, on which a host sends a text, and prints what it is answered.

@@ -2,11 +2,26 @@
 
 use core::fmt;
 use core::time::Duration;
-use embedded_hal::digital;
+use embedded_hal::digital::{self, ErrorType};
+
+crate::which_pin::which_pin! {
+    /// A pin of a stepper motor's driver failed.
+    PinError: digital, Step "STEP: {}", Dir "DIR: {}", Enable "ENABLE: {}", Sleep "SLEEP: {}"
+}
+
+/// What fails at a motor on these pins.
+pub type PinErrorOf<Step, Dir, Enable, Sleep> = PinError<
+    <Step as ErrorType>::Error,
+    <Dir as ErrorType>::Error,
+    <Enable as ErrorType>::Error,
+    <Sleep as ErrorType>::Error,
+>;
+
+/// The error of a motor on these pins.
+pub type ErrorOf<Step, Dir, Enable, Sleep> = Error<PinErrorOf<Step, Dir, Enable, Sleep>>;
 
 /// A step could not be taken, or a pin of a stepper motor failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error<Pin> {
     /// The motor is off: start it first.
@@ -25,7 +40,7 @@ pub enum Error<Pin> {
     StillOn(Pin),
 }
 
-impl<Pin: digital::Error> fmt::Display for Error<Pin> {
+impl<Pin: fmt::Display> fmt::Display for Error<Pin> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Off => write!(f, "stepper motor: is off; start it first"),
@@ -34,17 +49,15 @@ impl<Pin: digital::Error> fmt::Display for Error<Pin> {
             }
             Self::Microsteps(asked) => write!(f, "stepper motor: the chip has no {asked} microsteps"),
             Self::Pin(cause) => {
-                write!(f, "pin of the stepper motor: {}; it has no current", cause.kind())
+                write!(f, "pin of the stepper motor: {cause}; it has no current")
             }
             Self::StillOn(cause) => {
-                write!(
-                    f,
-                    "pin of the stepper motor: {}; it gets no steps, but may have current",
-                    cause.kind()
-                )
+                write!(f, "pin of the stepper motor: {cause}; it gets no steps, but may have current")
             }
         }
     }
 }
 
-impl<Pin: digital::Error> core::error::Error for Error<Pin> {}
+impl<Pin: fmt::Debug + fmt::Display> core::error::Error for Error<Pin> {}
+
+crate::which_pin::formats_as_shown!(<Pin: fmt::Display> Error<Pin>);

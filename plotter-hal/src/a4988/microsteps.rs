@@ -1,6 +1,18 @@
 //! [`MicrostepPins`]: the pins that say how many microsteps make a full step.
 
-use embedded_hal::digital::{OutputPin, PinState};
+use embedded_hal::digital::{self, OutputPin, PinState};
+
+crate::which_pin::which_pin! {
+    /// A pin that says how many microsteps make a full step failed.
+    MicrostepPinError: digital, Ms1 "MS1: {}", Ms2 "MS2: {}", Ms3 "MS3: {}"
+}
+
+/// What can fail at these pins.
+pub(super) type MicrostepErrorOf<Ms1, Ms2, Ms3> = MicrostepPinError<
+    <Ms1 as digital::ErrorType>::Error,
+    <Ms2 as digital::ErrorType>::Error,
+    <Ms3 as digital::ErrorType>::Error,
+>;
 
 /// Which chip, and so which table of resolutions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -76,14 +88,14 @@ impl<Ms1, Ms2, Ms3> MicrostepPins<Ms1, Ms2, Ms3> {
         (self.ms1, self.ms2, self.ms3)
     }
 
-    pub(super) fn set(&mut self, [ms1, ms2, ms3]: [bool; 3]) -> Result<(), Ms1::Error>
+    pub(super) fn set(&mut self, [ms1, ms2, ms3]: [bool; 3]) -> Result<(), MicrostepErrorOf<Ms1, Ms2, Ms3>>
     where
         Ms1: OutputPin,
-        Ms2: OutputPin<Error = Ms1::Error>,
-        Ms3: OutputPin<Error = Ms1::Error>,
+        Ms2: OutputPin,
+        Ms3: OutputPin,
     {
-        self.ms1.set_state(PinState::from(ms1))?;
-        self.ms2.set_state(PinState::from(ms2))?;
-        self.ms3.set_state(PinState::from(ms3))
+        self.ms1.set_state(PinState::from(ms1)).map_err(MicrostepPinError::Ms1)?;
+        self.ms2.set_state(PinState::from(ms2)).map_err(MicrostepPinError::Ms2)?;
+        self.ms3.set_state(PinState::from(ms3)).map_err(MicrostepPinError::Ms3)
     }
 }

@@ -39,7 +39,7 @@ pub struct DcAxes<X, Y> {
     y: DeadTime<Y>,
 }
 
-impl<X: Bridge, Y: Bridge<Error = X::Error>> DcAxes<X, Y> {
+impl<X: Bridge, Y: Bridge> DcAxes<X, Y> {
     /// Both motors, which wait for `dead_time` before they are reversed; 0 for bridges that need none. Each
     /// takes the share of its own axis. Leaves the pins as they are: call [`start`](Self::start) for a known
     /// state.
@@ -61,7 +61,7 @@ impl<X: Bridge, Y: Bridge<Error = X::Error>> DcAxes<X, Y> {
     /// # Errors
     ///
     /// [`Error`] says what failed at which motor.
-    pub fn start(&mut self) -> Result<(), Error<X::Error>> {
+    pub fn start(&mut self) -> Result<(), Error<X::Error, Y::Error>> {
         let (x, y) = (self.x.start(), self.y.start());
         Error::check(x, y)
     }
@@ -71,7 +71,7 @@ impl<X: Bridge, Y: Bridge<Error = X::Error>> DcAxes<X, Y> {
     /// # Errors
     ///
     /// [`Error`] says what failed at which motor; the other one has been stopped as well.
-    pub fn drive(&mut self, drive: Drive, now: Duration) -> Result<(), Error<X::Error>> {
+    pub fn drive(&mut self, drive: Drive, now: Duration) -> Result<(), Error<X::Error, Y::Error>> {
         let (x, y) = (self.x.drive(drive, now), self.y.drive(drive, now));
         self.check(x, y)
     }
@@ -81,7 +81,7 @@ impl<X: Bridge, Y: Bridge<Error = X::Error>> DcAxes<X, Y> {
     /// # Errors
     ///
     /// [`Error`] says what failed at which motor.
-    pub fn stop(&mut self) -> Result<(), Error<X::Error>> {
+    pub fn stop(&mut self) -> Result<(), Error<X::Error, Y::Error>> {
         let (x, y) = (self.x.stop(), self.y.stop());
         Error::check(x, y)
     }
@@ -92,7 +92,11 @@ impl<X: Bridge, Y: Bridge<Error = X::Error>> DcAxes<X, Y> {
     }
 
     /// A motor that failed has stopped itself: stops the other one.
-    fn check(&mut self, x: Result<(), X::Error>, y: Result<(), X::Error>) -> Result<(), Error<X::Error>> {
+    fn check(
+        &mut self,
+        x: Result<(), X::Error>,
+        y: Result<(), Y::Error>,
+    ) -> Result<(), Error<X::Error, Y::Error>> {
         match (x, y) {
             (Ok(()), Ok(())) => Ok(()),
             (Err(x), Ok(())) => Err(Error { x: Some(x), y: self.y.stop().err() }),

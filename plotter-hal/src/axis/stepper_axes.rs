@@ -1,7 +1,7 @@
 //! [`StepperAxes`]: two stepper motors.
 
 use super::Error;
-use crate::a4988::{self, A4988};
+use crate::a4988::{self, A4988, ErrorOf};
 use core::time::Duration;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::OutputPin;
@@ -53,19 +53,20 @@ pub struct StepperAxes<X, Y> {
 }
 
 /// What both motors can say.
-type Outcome<Pin> = Result<(), Error<a4988::Error<Pin>>>;
+type Outcome<XStep, XDir, XEnable, XSleep, YStep, YDir, YEnable, YSleep> =
+    Result<(), Error<ErrorOf<XStep, XDir, XEnable, XSleep>, ErrorOf<YStep, YDir, YEnable, YSleep>>>;
 
 impl<XStep, XDir, XEnable, XSleep, YStep, YDir, YEnable, YSleep>
     StepperAxes<A4988<XStep, XDir, XEnable, XSleep>, A4988<YStep, YDir, YEnable, YSleep>>
 where
     XStep: OutputPin,
-    XDir: OutputPin<Error = XStep::Error>,
-    XEnable: OutputPin<Error = XStep::Error>,
-    XSleep: OutputPin<Error = XStep::Error>,
-    YStep: OutputPin<Error = XStep::Error>,
-    YDir: OutputPin<Error = XStep::Error>,
-    YEnable: OutputPin<Error = XStep::Error>,
-    YSleep: OutputPin<Error = XStep::Error>,
+    XDir: OutputPin,
+    XEnable: OutputPin,
+    XSleep: OutputPin,
+    YStep: OutputPin,
+    YDir: OutputPin,
+    YEnable: OutputPin,
+    YSleep: OutputPin,
 {
     /// Both motors; each takes the share of its own axis. Leaves the pins as they are: nothing moves before
     /// [`start`](Self::start).
@@ -98,7 +99,10 @@ where
     /// # Errors
     ///
     /// As [`A4988::start`]; after a fault of a pin both motors have been stopped.
-    pub fn start(&mut self, now: Duration) -> Outcome<XStep::Error> {
+    pub fn start(
+        &mut self,
+        now: Duration,
+    ) -> Outcome<XStep, XDir, XEnable, XSleep, YStep, YDir, YEnable, YSleep> {
         Error::check(self.x.can_start(now), self.y.can_start(now))?;
         let (x, y) = (self.x.start(now), self.y.start(now));
         self.check(x, y)
@@ -109,7 +113,10 @@ where
     /// # Errors
     ///
     /// As [`start`](Self::start), but never [`Busy`](a4988::Error::Busy).
-    pub fn start_blocking(&mut self, delay: &mut impl DelayNs) -> Outcome<XStep::Error> {
+    pub fn start_blocking(
+        &mut self,
+        delay: &mut impl DelayNs,
+    ) -> Outcome<XStep, XDir, XEnable, XSleep, YStep, YDir, YEnable, YSleep> {
         self.settle(delay);
         self.start(Duration::ZERO)?;
         self.settle(delay);
@@ -123,7 +130,11 @@ where
     ///
     /// As [`A4988::step`]. A pulse that one motor cannot take is not taken by the other; after a fault of a
     /// pin both have been stopped.
-    pub fn step(&mut self, pulse: Pulse, now: Duration) -> Outcome<XStep::Error> {
+    pub fn step(
+        &mut self,
+        pulse: Pulse,
+        now: Duration,
+    ) -> Outcome<XStep, XDir, XEnable, XSleep, YStep, YDir, YEnable, YSleep> {
         self.take(pulse)?;
         self.tick(now)
     }
@@ -133,7 +144,10 @@ where
     /// # Errors
     ///
     /// [`Error`] says what failed at which motor; both have been stopped.
-    pub fn tick(&mut self, now: Duration) -> Outcome<XStep::Error> {
+    pub fn tick(
+        &mut self,
+        now: Duration,
+    ) -> Outcome<XStep, XDir, XEnable, XSleep, YStep, YDir, YEnable, YSleep> {
         let now_ns = a4988::nanos(now);
         let (x, y) = (self.x.prepare(now_ns), self.y.prepare(now_ns));
         self.check(x, y)?;
@@ -151,7 +165,11 @@ where
     /// # Errors
     ///
     /// As [`step`](Self::step).
-    pub fn step_blocking(&mut self, pulse: Pulse, delay: &mut impl DelayNs) -> Outcome<XStep::Error> {
+    pub fn step_blocking(
+        &mut self,
+        pulse: Pulse,
+        delay: &mut impl DelayNs,
+    ) -> Outcome<XStep, XDir, XEnable, XSleep, YStep, YDir, YEnable, YSleep> {
         self.take(pulse)?;
         self.settle(delay);
         // Ends: each turn waits for the next of DIR set, STEP high, STEP low.
@@ -177,7 +195,7 @@ where
     /// # Errors
     ///
     /// [`Error`] says what failed at which motor.
-    pub fn stop(&mut self) -> Outcome<XStep::Error> {
+    pub fn stop(&mut self) -> Outcome<XStep, XDir, XEnable, XSleep, YStep, YDir, YEnable, YSleep> {
         let (x, y) = (self.x.stop(), self.y.stop());
         Error::check(x, y)
     }
@@ -188,7 +206,7 @@ where
         (self.x, self.y)
     }
 
-    fn take(&mut self, pulse: Pulse) -> Outcome<XStep::Error> {
+    fn take(&mut self, pulse: Pulse) -> Outcome<XStep, XDir, XEnable, XSleep, YStep, YDir, YEnable, YSleep> {
         Error::check(self.x.can_take(pulse), self.y.can_take(pulse))?;
         self.x.take(pulse);
         self.y.take(pulse);
@@ -204,9 +222,9 @@ where
     /// A motor that failed has stopped itself: stops the other one.
     fn check(
         &mut self,
-        x: Result<(), a4988::Error<XStep::Error>>,
-        y: Result<(), a4988::Error<XStep::Error>>,
-    ) -> Outcome<XStep::Error> {
+        x: Result<(), ErrorOf<XStep, XDir, XEnable, XSleep>>,
+        y: Result<(), ErrorOf<YStep, YDir, YEnable, YSleep>>,
+    ) -> Outcome<XStep, XDir, XEnable, XSleep, YStep, YDir, YEnable, YSleep> {
         match (x, y) {
             (Ok(()), Ok(())) => Ok(()),
             (Err(x), Ok(())) => Err(Error { x: Some(x), y: self.y.stop().err() }),

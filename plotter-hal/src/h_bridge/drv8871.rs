@@ -16,7 +16,7 @@
 
 use super::{Bridge, Error, steps};
 use core::convert::Infallible;
-use embedded_hal::pwm::SetDutyCycle;
+use embedded_hal::pwm::{self, SetDutyCycle};
 use plotter_motion::{Axis, Direction, Drive, Duty};
 
 /// What the motor's current does while the PWM is off.
@@ -27,6 +27,11 @@ pub enum Decay {
     Fast,
     /// The motor brakes in between and at rest; the speed follows the duty more closely.
     Slow,
+}
+
+crate::which_pin::which_pin! {
+    /// The PWM of an input of a bridge failed.
+    InputError: pwm, In1 "IN1: {}", In2 "IN2: {}"
 }
 
 /// One motor on two PWM inputs. It turns by nothing but a [`Drive`], which only a safety gate makes.
@@ -68,10 +73,14 @@ pub struct Drv8871<In1, In2> {
     braked: bool,
 }
 
+/// What can fail at a bridge on these inputs.
+type ErrorOf<In1, In2> =
+    Error<Infallible, InputError<<In1 as pwm::ErrorType>::Error, <In2 as pwm::ErrorType>::Error>>;
+
 impl<In1, In2> Drv8871<In1, In2>
 where
     In1: SetDutyCycle,
-    In2: SetDutyCycle<Error = In1::Error>,
+    In2: SetDutyCycle,
 {
     /// The motor of `axis`. Leaves the pins as they are: call [`start`](Bridge::start) for a known state.
     pub const fn new(axis: Axis, in1: In1, in2: In2, decay: Decay) -> Self {
@@ -84,38 +93,42 @@ where
     }
 
     /// One input stays as at rest, the other one is modulated.
-    fn set(&mut self, direction: Direction, duty: Duty) -> Result<(), In1::Error> {
+    fn set(&mut self, direction: Direction, duty: Duty) -> Result<(), InputError<In1::Error, In2::Error>> {
         let slow = self.decay == Decay::Slow;
         let modulates_in1 = (direction == Direction::Plus) != slow;
         if self.direction != Some(direction) {
             self.direction = None;
             if modulates_in1 {
-                hold(&mut self.in2, slow)?
+                hold(&mut self.in2, slow).map_err(InputError::In2)?
             } else {
-                hold(&mut self.in1, slow)?
+                hold(&mut self.in1, slow).map_err(InputError::In1)?
             }
             self.direction = Some(direction);
             self.braked = slow;
         }
-        if modulates_in1 { modulate(&mut self.in1, duty, slow) } else { modulate(&mut self.in2, duty, slow) }
+        if modulates_in1 {
+            modulate(&mut self.in1, duty, slow).map_err(InputError::In1)
+        } else {
+            modulate(&mut self.in2, duty, slow).map_err(InputError::In2)
+        }
     }
 
     /// A PWM failed: takes the drive away, and tries each input once more for that.
-    fn after_pwm(&mut self, cause: In1::Error) -> Error<Infallible, In1::Error> {
+    fn after_pwm(&mut self, cause: InputError<In1::Error, In2::Error>) -> ErrorOf<In1, In2> {
         self.direction = None;
         let high = self.braked;
         let in1 = hold(&mut self.in1, high).or_else(|_| hold(&mut self.in1, high));
         let in2 = hold(&mut self.in2, high).or_else(|_| hold(&mut self.in2, high));
-        if in1.and(in2).is_ok() { Error::Pwm(cause) } else { Error::NotStopped(cause) }
+        if in1.is_ok() && in2.is_ok() { Error::Pwm(cause) } else { Error::NotStopped(cause) }
     }
 }
 
 impl<In1, In2> Bridge for Drv8871<In1, In2>
 where
     In1: SetDutyCycle,
-    In2: SetDutyCycle<Error = In1::Error>,
+    In2: SetDutyCycle,
 {
-    type Error = Error<Infallible, In1::Error>;
+    type Error = ErrorOf<In1, In2>;
 
     fn axis(&self) -> Axis {
         self.axis
@@ -139,8 +152,8 @@ where
 
     /// Lets the motor coast with fast decay, brakes it with slow.
     fn stop(&mut self) -> Result<(), Self::Error> {
-        let in1 = hold(&mut self.in1, self.braked);
-        let in2 = hold(&mut self.in2, self.braked);
+        let in1 = hold(&mut self.in1, self.braked).map_err(InputError::In1);
+        let in2 = hold(&mut self.in2, self.braked).map_err(InputError::In2);
         in1.and(in2).map_err(|cause| self.after_pwm(cause))
     }
 }

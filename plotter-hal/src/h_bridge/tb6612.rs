@@ -17,9 +17,14 @@
 
 use super::{Bridge, Error, steps};
 use crate::NoPin;
-use embedded_hal::digital::OutputPin;
-use embedded_hal::pwm::SetDutyCycle;
+use embedded_hal::digital::{self, OutputPin};
+use embedded_hal::pwm::{self, SetDutyCycle};
 use plotter_motion::{Axis, Direction, Drive};
+
+crate::which_pin::which_pin! {
+    /// A pin of a [`Tb6612`] failed.
+    Tb6612PinError: digital, In1 "IN1: {}", In2 "IN2: {}", Stby "STBY: {}"
+}
 
 /// One motor on a channel with PWM, IN1, IN2 and STBY. It turns by nothing but a [`Drive`], which only a
 /// safety gate makes.
@@ -61,11 +66,11 @@ pub struct Tb6612<Pwm, In1, In2, Stby> {
     direction: Option<Direction>,
 }
 
-impl<Pwm, In1: OutputPin, In2> Tb6612<Pwm, In1, In2, NoPin<In1::Error>> {
+impl<Pwm, In1, In2> Tb6612<Pwm, In1, In2, NoPin> {
     /// The motor of `axis` on a board that has STBY wired high. Leaves the pins as they are: call
     /// [`start`](Bridge::start) for a known state.
     pub const fn new(axis: Axis, pwm: Pwm, in1: In1, in2: In2) -> Self {
-        Self { axis, pwm, in1, in2, stby: NoPin::new(), has_stby: false, direction: None }
+        Self { axis, pwm, in1, in2, stby: NoPin, has_stby: false, direction: None }
     }
 
     /// With a pin on STBY: the second way to stop the motor, when its PWM or an input fails.
@@ -75,12 +80,22 @@ impl<Pwm, In1: OutputPin, In2> Tb6612<Pwm, In1, In2, NoPin<In1::Error>> {
     }
 }
 
+/// What can fail at these pins.
+type PinErrorOf<In1, In2, Stby> = Tb6612PinError<
+    <In1 as digital::ErrorType>::Error,
+    <In2 as digital::ErrorType>::Error,
+    <Stby as digital::ErrorType>::Error,
+>;
+
+/// What can fail at a bridge on these pins.
+type ErrorOf<Pwm, In1, In2, Stby> = Error<PinErrorOf<In1, In2, Stby>, <Pwm as pwm::ErrorType>::Error>;
+
 impl<Pwm, In1, In2, Stby> Tb6612<Pwm, In1, In2, Stby>
 where
     Pwm: SetDutyCycle,
     In1: OutputPin,
-    In2: OutputPin<Error = In1::Error>,
-    Stby: OutputPin<Error = In1::Error>,
+    In2: OutputPin,
+    Stby: OutputPin,
 {
     /// Lets the motor coast: no duty, both inputs low, and the PWM high, which without a direction drives
     /// nothing.
@@ -88,7 +103,7 @@ where
     /// # Errors
     ///
     /// [`Error`] if a pin or the PWM fails; it says what became of the motor.
-    pub fn coast(&mut self) -> Result<(), Error<In1::Error, Pwm::Error>> {
+    pub fn coast(&mut self) -> Result<(), ErrorOf<Pwm, In1, In2, Stby>> {
         self.stop()?;
         self.both_low().map_err(|cause| self.after_pin(cause))?;
         self.pwm.set_duty_cycle_fully_on().map_err(|cause| self.after_pwm(cause))
@@ -100,19 +115,19 @@ where
     }
 
     /// Sets the inputs; the duty has been taken away.
-    fn turn_to(&mut self, direction: Direction) -> Result<(), In1::Error> {
+    fn turn_to(&mut self, direction: Direction) -> Result<(), PinErrorOf<In1, In2, Stby>> {
         // A fault may have left the chip in standby.
         if self.direction.take().is_none() {
-            self.stby.set_high()?;
+            self.stby.set_high().map_err(Tb6612PinError::Stby)?;
         }
         match direction {
             Direction::Plus => {
-                self.in2.set_low()?;
-                self.in1.set_high()?;
+                self.in2.set_low().map_err(Tb6612PinError::In2)?;
+                self.in1.set_high().map_err(Tb6612PinError::In1)?;
             }
             Direction::Minus => {
-                self.in1.set_low()?;
-                self.in2.set_high()?;
+                self.in1.set_low().map_err(Tb6612PinError::In1)?;
+                self.in2.set_high().map_err(Tb6612PinError::In2)?;
             }
         }
         self.direction = Some(direction);
@@ -120,15 +135,15 @@ where
     }
 
     /// Both inputs low, and the second one also when the first one fails.
-    fn both_low(&mut self) -> Result<(), In1::Error> {
+    fn both_low(&mut self) -> Result<(), PinErrorOf<In1, In2, Stby>> {
         self.direction = None;
-        let in1 = self.in1.set_low();
-        let in2 = self.in2.set_low();
+        let in1 = self.in1.set_low().map_err(Tb6612PinError::In1);
+        let in2 = self.in2.set_low().map_err(Tb6612PinError::In2);
         in1.and(in2)
     }
 
     /// An input failed: makes sure of the duty.
-    fn after_pin(&mut self, cause: In1::Error) -> Error<In1::Error, Pwm::Error> {
+    fn after_pin(&mut self, cause: PinErrorOf<In1, In2, Stby>) -> ErrorOf<Pwm, In1, In2, Stby> {
         self.direction = None;
         match self.pwm.set_duty_cycle_fully_off() {
             Ok(()) => Error::Pin(cause),
@@ -137,7 +152,7 @@ where
     }
 
     /// The PWM failed: tries it once more, then takes the direction away, then the chip's power.
-    fn after_pwm(&mut self, cause: Pwm::Error) -> Error<In1::Error, Pwm::Error> {
+    fn after_pwm(&mut self, cause: Pwm::Error) -> ErrorOf<Pwm, In1, In2, Stby> {
         self.direction = None;
         if self.pwm.set_duty_cycle_fully_off().is_ok() || self.both_low().is_ok() || self.stand_by() {
             Error::Pwm(cause)
@@ -155,10 +170,10 @@ impl<Pwm, In1, In2, Stby> Bridge for Tb6612<Pwm, In1, In2, Stby>
 where
     Pwm: SetDutyCycle,
     In1: OutputPin,
-    In2: OutputPin<Error = In1::Error>,
-    Stby: OutputPin<Error = In1::Error>,
+    In2: OutputPin,
+    Stby: OutputPin,
 {
-    type Error = Error<In1::Error, Pwm::Error>;
+    type Error = ErrorOf<Pwm, In1, In2, Stby>;
 
     fn axis(&self) -> Axis {
         self.axis
@@ -168,7 +183,7 @@ where
     fn start(&mut self) -> Result<(), Self::Error> {
         self.stop()?;
         self.both_low().map_err(|cause| self.after_pin(cause))?;
-        self.stby.set_high().map_err(|cause| self.after_pin(cause))
+        self.stby.set_high().map_err(|cause| self.after_pin(Tb6612PinError::Stby(cause)))
     }
 
     /// A duty of 0 brakes; every other is rounded to the nearest step of the PWM.

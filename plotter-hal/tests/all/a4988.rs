@@ -7,7 +7,7 @@ use embedded_hal_mock::eh1::delay::{CheckedDelay, Transaction as Wait};
 use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Set};
 use logic_analyser::{Analyser, Broken, Fault, Wire};
 use plotter_hal::NoPin;
-use plotter_hal::a4988::{A4988, Chip, Error, MicrostepPins, Timing};
+use plotter_hal::a4988::{A4988, Chip, Error, MicrostepPinError, MicrostepPins, PinError, Timing};
 use plotter_motion::{
     Axis, Direction, LimitSwitches, SafetyGate, StepPair,
     safety::{Blocked, Pulse},
@@ -20,6 +20,18 @@ const CHIPS: [Timing; 3] = [Timing::A4988, Timing::DRV8825, Timing::TMC2209];
 const LATER: Duration = Duration::from_millis(5);
 
 type Motor<'a> = A4988<Wire<'a>, Wire<'a>, Wire<'a>, Wire<'a>>;
+type AnyPin = PinError<Broken, Broken, Broken, Broken>;
+
+/// The pin whose access failed first.
+fn first_failed(analyser: &Analyser) -> AnyPin {
+    match analyser.log().iter().find(|access| access.failed).unwrap().wire {
+        "STEP" => PinError::Step(Broken),
+        "DIR" => PinError::Dir(Broken),
+        "ENABLE" => PinError::Enable(Broken),
+        "SLEEP" => PinError::Sleep(Broken),
+        other => panic!("{other} is none of its pins"),
+    }
+}
 
 /// Nothing is pressed.
 static GATE: SafetyGate = SafetyGate::new(LimitSwitches::RELEASED, false);
@@ -35,7 +47,7 @@ fn motor(analyser: &Analyser, timing: Timing) -> Motor<'_> {
 }
 
 /// A timer that calls as soon as the driver wants it.
-fn run(analyser: &Analyser, motor: &mut Motor<'_>) -> Result<(), Error<Broken>> {
+fn run(analyser: &Analyser, motor: &mut Motor<'_>) -> Result<(), Error<AnyPin>> {
     while let Some(due) = motor.due() {
         analyser.now.set(analyser.now.get().max(due));
         motor.tick(analyser.now.get())?;
@@ -44,7 +56,7 @@ fn run(analyser: &Analyser, motor: &mut Motor<'_>) -> Result<(), Error<Broken>> 
 }
 
 /// Start, two steps forwards and one back, each as soon as the chip takes it.
-fn there_and_back(analyser: &Analyser, motor: &mut Motor<'_>) -> Result<(), Error<Broken>> {
+fn there_and_back(analyser: &Analyser, motor: &mut Motor<'_>) -> Result<(), Error<AnyPin>> {
     motor.start(analyser.now.get())?;
     for x in [1, 1, -1] {
         motor.step(pulse(x), analyser.now.get())?;
@@ -386,7 +398,9 @@ fn a_resolution_pin_that_fails_switches_the_motor_off() {
         let [ms1, ms2, ms3] = ["MS1", "MS2", "MS3"].map(|wire| analyser.wire(wire));
         let mut pins = MicrostepPins::new(Chip::A4988, ms1, ms2, ms3);
         analyser.set_fault(Fault::Once { at: analyser.accesses() + chip_pin, takes_effect: false });
-        assert_eq!(motor.set_microsteps(&mut pins, 16, LATER), Err(Error::Pin(Broken)));
+        let failed =
+            [MicrostepPinError::Ms1(Broken), MicrostepPinError::Ms2(Broken), MicrostepPinError::Ms3(Broken)];
+        assert_eq!(motor.set_microsteps(&mut pins, 16, LATER), Err(Error::Pin(failed[chip_pin])));
         assert_eq!(analyser.level("ENABLE"), 1);
     }
 }
@@ -406,10 +420,10 @@ fn whichever_access_fails_the_motor_ends_without_current_and_says_so() {
         let outcome = there_and_back(&analyser, &mut motor);
         let rises = analyser.rises("STEP");
         if can_be_switched_off(fault) {
-            assert_eq!(outcome, Err(Error::Pin(Broken)), "{fault:?}");
+            assert_eq!(outcome, Err(Error::Pin(first_failed(&analyser))), "{fault:?}");
             assert!(analyser.level("ENABLE") == 1 || analyser.level("SLEEP") == 0, "{fault:?}");
         } else {
-            assert_eq!(outcome, Err(Error::StillOn(Broken)), "{fault:?}");
+            assert_eq!(outcome, Err(Error::StillOn(first_failed(&analyser))), "{fault:?}");
         }
 
         // No tick makes a step any more, and none is taken.
@@ -443,10 +457,10 @@ fn whichever_access_of_the_blocking_form_fails_the_motor_ends_without_current() 
         let analyser = Analyser::failing(fault);
         let outcome = scenario(&analyser);
         if can_be_switched_off(fault) {
-            assert_eq!(outcome, Err(Error::Pin(Broken)), "{fault:?}");
+            assert_eq!(outcome, Err(Error::Pin(first_failed(&analyser))), "{fault:?}");
             assert!(analyser.level("ENABLE") == 1 || analyser.level("SLEEP") == 0, "{fault:?}");
         } else {
-            assert_eq!(outcome, Err(Error::StillOn(Broken)), "{fault:?}");
+            assert_eq!(outcome, Err(Error::StillOn(first_failed(&analyser))), "{fault:?}");
         }
         assert_eq!(analyser.too_short("STEP", "DIR", Timing::DRV8825), [""; 0], "{fault:?}");
     }
@@ -463,7 +477,7 @@ fn an_enable_that_fails_for_good_is_replaced_by_sleep() {
         A4988::new(Axis::X, step, Pin::new(&[]), Timing::A4988).with_enable(enable).with_sleep(sleep);
     motor.start(Duration::ZERO).unwrap();
     let error = motor.stop().unwrap_err();
-    assert_eq!(error, Error::Pin(fault.clone()));
+    assert_eq!(error, Error::Pin(PinError::Enable(fault.clone())));
     assert!(error.to_string().ends_with("it has no current"), "{error}");
     let (mut step, mut dir, mut enable, mut sleep) = motor.release();
     step.done();
@@ -479,10 +493,10 @@ fn a_motor_without_enable_and_sleep_may_hold_after_a_fault() {
     motor.start(Duration::ZERO).unwrap();
     analyser.set_fault(Fault::Once { at: analyser.accesses(), takes_effect: false });
     let error = motor.step(pulse(1), LATER).unwrap_err();
-    assert_eq!(error, Error::StillOn(Broken));
+    assert_eq!(error, Error::StillOn(PinError::Dir(Broken)));
     assert!(error.to_string().contains("gets no steps"), "{error}");
     assert_eq!(motor.stop(), Ok(()));
-    let (_, _, NoPin { .. }, NoPin { .. }) = motor.release();
+    let (_, _, NoPin, NoPin) = motor.release();
 }
 
 #[test]

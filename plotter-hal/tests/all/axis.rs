@@ -3,7 +3,7 @@
 use crate::logic_analyser;
 
 use logic_analyser::{Analyser, Broken, Fault, Wire};
-use plotter_hal::a4988::{self, A4988, Timing};
+use plotter_hal::a4988::{self, A4988, PinError, Timing};
 use plotter_hal::axis::Error;
 use plotter_hal::h_bridge;
 use plotter_hal::{DcAxes, HBridge, StepperAxes};
@@ -16,8 +16,20 @@ use std::time::Duration;
 type Stepper<'a> = A4988<Wire<'a>, Wire<'a>, Wire<'a>, Wire<'a>>;
 type Steppers<'a> = StepperAxes<Stepper<'a>, Stepper<'a>>;
 type Bridge<'a> = HBridge<Wire<'a>, Wire<'a>, Wire<'a>>;
-type StepperError = Error<a4988::Error<Broken>>;
-type DcError = Error<h_bridge::Error<Broken, Broken>>;
+type AnyPin = PinError<Broken, Broken, Broken, Broken>;
+type StepperError = Error<a4988::Error<AnyPin>>;
+type DcError = Error<h_bridge::Error<h_bridge::PinError<Broken, Broken>, Broken>>;
+
+/// The pin of a motor behind a wire.
+fn pin_on(wire: &str) -> AnyPin {
+    match wire.split_once(' ').unwrap().1 {
+        "STEP" => PinError::Step(Broken),
+        "DIR" => PinError::Dir(Broken),
+        "ENABLE" => PinError::Enable(Broken),
+        "SLEEP" => PinError::Sleep(Broken),
+        other => panic!("{other} is no pin of a motor"),
+    }
+}
 
 const TIMING: Timing = Timing::A4988;
 /// Long after the wake-up.
@@ -249,10 +261,11 @@ fn whichever_access_fails_both_motors_end_without_current() {
         let error = dance(&analyser, &mut motors).unwrap_err();
         let failed = analyser.log().iter().find(|access| access.failed).unwrap().wire;
         if matches!(fault, Fault::All { .. }) {
-            assert_eq!(error.x.or(error.y), Some(a4988::Error::StillOn(Broken)), "{fault:?}");
+            let at_it = if failed.starts_with('X') { error.x } else { error.y };
+            assert_eq!(at_it, Some(a4988::Error::StillOn(pin_on(failed))), "{fault:?}");
         } else {
             let (x, y) = (failed.starts_with('X'), failed.starts_with('Y'));
-            let pin = a4988::Error::Pin(Broken);
+            let pin = a4988::Error::Pin(pin_on(failed));
             assert_eq!(error, Error { x: x.then_some(pin), y: y.then_some(pin) }, "{fault:?}");
             assert!(is_off(&analyser, Axis::X) && is_off(&analyser, Axis::Y), "{fault:?}");
         }
@@ -277,7 +290,7 @@ fn a_stop_tries_both_motors_whatever_fails() {
     motors.start(Duration::ZERO).unwrap();
     let from = analyser.accesses();
     analyser.set_fault(Fault::All { at: from });
-    let still_on = Some(a4988::Error::StillOn(Broken));
+    let still_on = Some(a4988::Error::StillOn(PinError::Enable(Broken)));
     let error = motors.stop().unwrap_err();
     assert_eq!(error, Error { x: still_on, y: still_on });
     assert!(error.to_string().starts_with("axis x: ") && error.to_string().contains("; axis y: "), "{error}");

@@ -38,7 +38,11 @@ fn a_firmware_gets_four_crates_with_this_one() {
     let expected = [
         ("defmt", true),
         ("embedded-hal", false),
+        ("embedded-hal-async", true),
+        ("embedded-hal-nb", true),
         ("embedded-io", false),
+        ("embedded-io-06", true),
+        ("embedded-io-async", true),
         ("libm", false),
         ("plotter-motion", false),
     ];

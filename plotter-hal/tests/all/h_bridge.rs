@@ -6,7 +6,7 @@ use embedded_hal_mock::eh1::MockError;
 use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Set};
 use embedded_hal_mock::eh1::pwm::{Mock as Pwm, Transaction as SetDuty};
 use plotter_hal::HBridge;
-use plotter_hal::h_bridge::Error;
+use plotter_hal::h_bridge::{Error, PinError};
 use plotter_motion::{Axis, Demand, Drive, Duty, LimitSwitches, SafetyGate};
 use proptest::prelude::*;
 use std::cell::RefCell;
@@ -223,7 +223,7 @@ fn a_failing_direction_pin_leaves_the_motor_without_duty() {
     let reverse = Pin::new(&[Set::set(State::Low)]);
     let mut bridge = HBridge::new(Axis::X, pwm, forward, reverse);
     let error = bridge.drive(drive(0.5, 0.0)).unwrap_err();
-    assert_eq!(error, Error::Pin(fault));
+    assert_eq!(error, Error::Pin(PinError::Forward(fault)));
     assert!(error.to_string().ends_with("the duty is taken away"), "{error}");
 
     let (mut pwm, mut forward, mut reverse) = bridge.release();
@@ -267,7 +267,7 @@ fn after_a_fault_the_direction_is_set_anew() {
     let wires = Wires { failing: vec![5], ..Wires::default() };
     let mut bridge = wires.bridge();
     bridge.drive(drive(0.5, 0.0)).unwrap();
-    assert_eq!(bridge.drive(drive(-0.5, 0.0)), Err(Error::Pin(Broken)));
+    assert_eq!(bridge.drive(drive(-0.5, 0.0)), Err(Error::Pin(PinError::Forward(Broken))));
     bridge.drive(drive(-0.5, 0.0)).unwrap();
     assert_eq!(wires.now(), Levels { duty: 100, forward: false, reverse: true });
 }

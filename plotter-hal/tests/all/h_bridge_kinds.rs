@@ -5,7 +5,7 @@ use crate::logic_analyser;
 
 use logic_analyser::{Analyser, FULL, Fault, Wire};
 use plotter_hal::HBridge;
-use plotter_hal::h_bridge::{Bridge, DeadTime, Decay, Drv8871, Error, Tb6612};
+use plotter_hal::h_bridge::{Bridge, Bts7960, DeadTime, Decay, Drv8833, Drv8871, Error, Tb6612};
 use plotter_motion::{Axis, Demand, Drive, Duty, LimitSwitches, SafetyGate};
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -22,10 +22,22 @@ fn drive(x: f32) -> Drive<'static> {
 enum Kind {
     L293d,
     Drv8871(Decay),
+    /// With nSLEEP.
+    Drv8833(Decay),
+    /// With both enables.
+    Bts7960,
     Tb6612,
 }
 
-const KINDS: [Kind; 4] = [Kind::L293d, Kind::Drv8871(Decay::Fast), Kind::Drv8871(Decay::Slow), Kind::Tb6612];
+const KINDS: [Kind; 7] = [
+    Kind::L293d,
+    Kind::Drv8871(Decay::Fast),
+    Kind::Drv8871(Decay::Slow),
+    Kind::Drv8833(Decay::Fast),
+    Kind::Drv8833(Decay::Slow),
+    Kind::Bts7960,
+    Kind::Tb6612,
+];
 
 /// What an error says of the motor, for any pin type.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +60,8 @@ impl Kind {
             Self::L293d => (level("1A") - level("2A")) * level("EN"),
             // Never both modulated, so that their difference is the mean voltage.
             Self::Drv8871(_) => level("IN1") - level("IN2"),
+            Self::Drv8833(_) => level("SLEEP") * (level("IN1") - level("IN2")),
+            Self::Bts7960 => level("R_EN") * level("L_EN") * (level("RPWM") - level("LPWM")),
             Self::Tb6612 => level("STBY") * (level("IN1") - level("IN2")) * level("PWM"),
         }
     }
@@ -66,6 +80,15 @@ impl Kind {
             }
             Self::Drv8871(decay) => {
                 scenario.on(Drv8871::new(Axis::X, analyser.wire("IN1"), analyser.wire("IN2"), decay))
+            }
+            Self::Drv8833(decay) => {
+                let [in1, in2, sleep] = ["IN1", "IN2", "SLEEP"].map(|wire| analyser.wire(wire));
+                scenario.on(Drv8833::new(Axis::X, in1, in2, decay).with_sleep(sleep))
+            }
+            Self::Bts7960 => {
+                let [right, left, r_en, l_en] =
+                    ["RPWM", "LPWM", "R_EN", "L_EN"].map(|wire| analyser.wire(wire));
+                scenario.on(Bts7960::new(Axis::X, right, left, r_en, l_en))
             }
             Self::Tb6612 => {
                 let [pwm, in1, in2, stby] = ["PWM", "IN1", "IN2", "STBY"].map(|wire| analyser.wire(wire));
@@ -122,9 +145,9 @@ fn a_start_brings_every_pin_into_a_known_state_without_drive() {
         let history = analyser.history();
         assert!(history.iter().all(|(_, levels)| kind.voltage(levels) == 0), "{kind:?}");
         let pins = match kind {
-            Kind::L293d => 3,
             Kind::Drv8871(_) => 2,
-            Kind::Tb6612 => 4,
+            Kind::L293d | Kind::Drv8833(_) => 3,
+            Kind::Bts7960 | Kind::Tb6612 => 4,
         };
         assert_eq!(history.last().unwrap().1.len(), pins, "{kind:?}");
     }
@@ -157,7 +180,8 @@ fn no_access_on_the_way_drives_the_motor_elsewhere_than_asked() {
             let (old, asked) = (kind.now(&before), kind.now(&analyser));
             // At the first drive after coasting, slow decay passes by the whole supply in the direction
             // asked.
-            let is_first_slow = number == 0 && kind == Kind::Drv8871(Decay::Slow);
+            let is_slow = matches!(kind, Kind::Drv8871(Decay::Slow) | Kind::Drv8833(Decay::Slow));
+            let is_first_slow = number == 0 && is_slow;
             let most = if is_first_slow { asked.signum() * i32::from(FULL) } else { asked };
             let on_the_way = analyser.history()[before.accesses()..]
                 .iter()

@@ -49,7 +49,7 @@ impl OutputPin for Wire {
     }
 }
 
-type Motor = A4988<Wire, Wire, NoPin<Infallible>, NoPin<Infallible>>;
+type Motor = A4988<Wire, Wire, NoPin, NoPin>;
 
 struct Board {
     now: Rc<Cell<Duration>>,

@@ -7,7 +7,7 @@ use embedded_hal::digital::PinState;
 use embedded_hal_mock::eh1::MockError;
 use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Read};
 use faulty::{Broken, Levels};
-use plotter_hal::limit_switch::Error;
+use plotter_hal::limit_switch::{Error, GroupError};
 use plotter_hal::{LimitSwitch, LimitSwitchGroup, SwitchSettings};
 use plotter_motion::{Axis, Demand, Direction, Duty, LimitSwitches, SafetyGate};
 use proptest::prelude::*;
@@ -97,6 +97,12 @@ fn the_group_reads_all_switches_whichever_fails_and_names_it() {
         (Axis::Y, Direction::Minus, "axis y: pin of its lower limit switch"),
         (Axis::Y, Direction::Plus, "axis y: pin of its upper limit switch"),
     ];
+    let errors: [GroupError<_, _, _, _>; 4] = [
+        GroupError::XMin(fault.clone()),
+        GroupError::XMax(fault.clone()),
+        GroupError::YMin(fault.clone()),
+        GroupError::YMax(fault.clone()),
+    ];
     for (failing, (axis, end, text)) in ends.into_iter().enumerate() {
         let switch = |number: usize| {
             let read = Read::get(State::Low);
@@ -109,7 +115,7 @@ fn the_group_reads_all_switches_whichever_fails_and_names_it() {
         assert!(group.limits().blocks(axis, end), "nobody has looked");
 
         let error = group.tick(Duration::ZERO).unwrap_err();
-        assert_eq!((error.axis, error.end, &error.cause), (axis, end, &fault));
+        assert_eq!((error.axis(), error.end(), &error), (axis, end, &errors[failing]));
         assert!(error.to_string().starts_with(text), "{error}");
         let mut expected = LimitSwitches::default();
         expected.set(axis, end, true);

@@ -11,9 +11,15 @@
 )]
 
 mod a4988;
+#[cfg(feature = "async")]
+mod async_inputs;
 mod axis;
+#[cfg(feature = "defmt")]
+mod defmt_formats;
 mod dependencies;
 mod estop_input;
+#[cfg(feature = "async")]
+mod executor;
 mod faulty;
 mod h_bridge;
 mod h_bridge_kinds;
@@ -22,7 +28,11 @@ mod late_loop;
 mod limit_switch;
 mod logic_analyser;
 mod pen_servo;
+mod pins_apart;
 mod prop_drivers;
 mod pulse_counter;
 mod quadrature;
+#[cfg(all(feature = "async", feature = "embedded-hal-nb", feature = "embedded-io-06"))]
+mod serial_halves;
 mod serial_line;
+mod tmc2209;

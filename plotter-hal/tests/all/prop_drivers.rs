@@ -374,7 +374,7 @@ impl<'a> Rig<'a> {
     }
 }
 
-fn is_refusal(error: plotter_hal::a4988::Error<Broken>) -> bool {
+fn is_refusal<Pin>(error: plotter_hal::a4988::Error<Pin>) -> bool {
     use plotter_hal::a4988::Error;
     matches!(error, Error::Off | Error::Busy { .. })
 }

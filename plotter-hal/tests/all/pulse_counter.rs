@@ -4,7 +4,7 @@ use crate::faulty;
 
 use faulty::{Broken, Levels};
 use plotter_hal::pulse_counter::Error;
-use plotter_hal::{CounterDelta, PulseInput};
+use plotter_hal::{CounterDelta, PulseInput, TimerCount};
 use plotter_motion::{Axis, Demand, Drive, Duty, LimitSwitches, SafetyGate, encoder::PulseCounter};
 use proptest::prelude::*;
 
@@ -62,5 +62,21 @@ proptest! {
             expected += i64::from(pulses) * if forwards { 1 } else { -1 };
         }
         prop_assert_eq!(i64::from(counter.position()), expected);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// A timer of 16 bits that is read in time knows the shaft's place, however often it has wrapped.
+    #[test]
+    fn a_timer_that_wraps_knows_the_place(start in any::<u16>(), moves in prop::collection::vec(any::<i16>(), 0..200)) {
+        let (mut encoder, mut shaft) = (TimerCount::new(start), 0_i32);
+        for moved in moves {
+            shaft += i32::from(moved);
+            let shown = start.wrapping_add(u16::try_from(shaft.rem_euclid(1 << 16)).unwrap());
+            prop_assert_eq!(encoder.update(shown), moved);
+        }
+        prop_assert_eq!(encoder.position(), shaft);
     }
 }

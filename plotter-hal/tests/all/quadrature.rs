@@ -6,7 +6,7 @@ use embedded_hal_mock::eh1::MockError;
 use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Read};
 use faulty::{Broken, Levels};
 use plotter_hal::Quadrature;
-use plotter_hal::quadrature::{Error, Phase};
+use plotter_hal::quadrature::{Error, Phase, PinError};
 use plotter_motion::{
     Demand, Direction, Drive, Duty, LimitSwitches, SafetyGate, config::Decoding, encoder::Phases,
 };
@@ -71,8 +71,8 @@ fn a_pin_that_cannot_be_read_changes_nothing() {
     ]);
     let mut encoder = Quadrature::new(a, b, Decoding::X1);
     assert_eq!(encoder.poll(), Ok(None));
-    assert_eq!(encoder.poll(), Err(Error::Pin(fault.clone())));
-    assert_eq!(encoder.poll(), Err(Error::Pin(fault)));
+    assert_eq!(encoder.poll(), Err(Error::Pin(PinError::A(fault.clone()))));
+    assert_eq!(encoder.poll(), Err(Error::Pin(PinError::B(fault))));
     assert_eq!(encoder.poll(), Ok(Some(Direction::Plus)));
     let (mut a, mut b) = encoder.release();
     a.done();
@@ -164,7 +164,8 @@ fn whichever_read_fails_the_position_is_right_again_at_the_next_one() {
                     Levels::new(read.map(|(read, &quarter)| level(is_a, read, Phases::of_quarter(quarter))))
                 };
                 let mut encoder = Quadrature::new(of(true), of(false), decoding);
-                let errors = polled.iter().filter(|_| encoder.poll() == Err(Error::Pin(Broken))).count();
+                let failed = if a_fails { PinError::A(Broken) } else { PinError::B(Broken) };
+                let errors = polled.iter().filter(|_| encoder.poll() == Err(Error::Pin(failed))).count();
                 let expected = [9, 19, 39][ALL.iter().position(|&other| other == decoding).unwrap()];
                 assert_eq!((errors, encoder.position()), (1, expected), "{decoding:?}, {failing} failing");
             }

@@ -8,6 +8,7 @@ use core::fmt;
 ///
 /// A new kind is a breaking change on purpose: whoever matches on it must say what becomes of such a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum MachineKind {
     /// Two DC motors with encoders, each of which moves an axis.
     Gantry,

@@ -22,6 +22,7 @@ pub use pulse_counter::PulseCounter;
 
 /// Levels of both phases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Phases {
     /// Phase A.
     pub a: bool,

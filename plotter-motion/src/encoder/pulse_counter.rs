@@ -31,6 +31,7 @@ use crate::{Direction, Duty};
 /// assert_eq!(counter.position(), 97);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PulseCounter {
     position: i32,
     direction: Option<Direction>,

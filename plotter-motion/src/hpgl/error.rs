@@ -382,3 +382,11 @@ impl fmt::Display for Error {
 }
 
 impl core::error::Error for Error {}
+
+/// As people read it: it quotes what was written, which `defmt` has no other form for.
+#[cfg(feature = "defmt")]
+impl defmt::Format for Error {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "{}", defmt::Display2Format(self));
+    }
+}

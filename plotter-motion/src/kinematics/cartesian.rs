@@ -34,6 +34,7 @@ impl MotorScale {
 
 /// Steps per millimetre that no motor has.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ScaleError {
     /// Which axis.
     pub axis: Axis,

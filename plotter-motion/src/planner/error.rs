@@ -5,6 +5,7 @@ use core::fmt;
 
 /// What a planner cannot take.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum PlanError {
     /// No room is left for the operation: take what is planned first, then push it again.

@@ -28,6 +28,7 @@ const GREATEST: f64 = 1e18;
 
 /// A number that no motion can be planned with.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ProfileError {
     /// What was wrong: `length_mm`, `speed_mm_s`, `accel_mm_s2`, `jerk_mm_s3`, `entry_mm_s` or `exit_mm_s`.
     pub quantity: &'static str,

@@ -72,6 +72,7 @@ pub fn encode(target: StepPoint) -> Result<[u8; TARGET_BYTES], OutOfRange> {
 
 /// What a controller says in one byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Reply {
     /// A motor went on by one encoder count.
     Pulse(Axis, Direction),
@@ -127,6 +128,7 @@ impl Reply {
 
 /// Why a [`Receiver`] dropped what it had of a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Dropped {
     /// A byte came that is not a digit.

@@ -110,6 +110,7 @@ fn check(session: u16, bytes: &[u8]) -> u16 {
 
 /// Why a frame was dropped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum DecodeError {
     /// Its zero did not come in time: more bytes than the longest frame has.

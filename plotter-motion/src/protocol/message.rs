@@ -111,6 +111,7 @@ fn unzigzag(value: u32) -> i32 {
 /// A stream that is none of messages. A link loses and changes nothing, so the other side speaks another
 /// language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum MessageError {
     /// A kind that this version does not know.

@@ -49,6 +49,8 @@ mod hpgl_turned_frame;
 mod hpgl_writer;
 mod link_session;
 mod loaded_gantry;
+#[cfg(feature = "build")]
+mod machine_constants;
 mod marking;
 mod messages;
 mod papers;
@@ -76,6 +78,7 @@ mod prop_marking_board;
 mod prop_motion;
 mod prop_planner;
 mod prop_protocol;
+mod prop_settings_bytes;
 mod prop_stepper_plotter;
 mod prop_testbed;
 mod prop_tuning;

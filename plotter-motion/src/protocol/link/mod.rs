@@ -43,6 +43,7 @@ const IN_A_ROW: Duration = Duration::from_millis(5);
 
 /// How a link stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum LinkState {
     /// A machine that no host has greeted.

@@ -45,6 +45,7 @@ impl Default for LinkSettings {
 
 /// What a link has been through.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LinkCounts {
     /// Frames that came whole.
     pub frames: u32,
