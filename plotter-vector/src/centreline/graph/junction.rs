@@ -5,19 +5,21 @@
 //! along which both lines run together: it is wider than a line, and the arms continue each other across it.
 
 use super::arm::{Arm, LONG, SHORT};
-use super::corner::{TURN_COS, direction};
+use super::corner::direction;
 use super::fan::Fan;
 use super::line_end::{line_end, seated_across, tail};
 use super::meeting::{Heart, Meet, partners};
 use super::near::Near;
-use super::site::{Scan, Site};
+use super::site::{Scan, Site, slack_px};
 use super::sites::Sites;
 use super::spur::Spurs;
-use super::trial::{GOOD_PX2, Trial, better_than, plainly_better_than};
+use super::trial::Trial;
 use super::{End, Graph};
+use crate::centreline::fit::prices::{self, RASTER_PX2};
 use crate::disjoint_sets::DisjointSets;
 use crate::ink::hairlines::Hairlines;
-use crate::{PxVec, picture::Pixel, stroke::PxPoint};
+use crate::stroke::{PxPoint, turn::CORNER_COS};
+use crate::{PxVec, picture::Pixel};
 use core::cell::{OnceCell, RefCell};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -107,7 +109,7 @@ impl Junctions {
         self.set_skip(one.end, one.arm.skip);
         self.set_skip(other.end, other.arm.skip);
         let (a, b) = (one.arm.direction, other.arm.direction);
-        let corner = points.len() == 1 && -a.dot(b) < TURN_COS;
+        let corner = points.len() == 1 && -a.dot(b) < CORNER_COS;
         self.connections.push(Connection {
             owner,
             from: one.end,
@@ -320,7 +322,7 @@ impl Lines<'_> {
         if width_px <= self.scan.thin_px() || !sure || length > LONGEST_IN_WIDTHS * width_px {
             return None;
         }
-        let wide = sites.iter().filter(|site| site.width_px > 1.15 * width_px).count();
+        let wide = sites.iter().filter(|site| site.width_px > width_px + slack_px(width_px)).count();
         if wide * 10 < sites.len() * 6 {
             return None;
         }
@@ -454,7 +456,7 @@ impl Lines<'_> {
         let Some(trial) = Trial::new(self.scan, heart.centre, arms, &sites) else { return straight };
         let cost = trial.cost(&straight, f64::INFINITY).unwrap_or(f64::INFINITY);
         let mut best = (cost, straight);
-        if best.0 <= GOOD_PX2 {
+        if best.0 <= RASTER_PX2 {
             return best.1;
         }
         let near: Option<Vec<ArmOf>> =
@@ -466,14 +468,14 @@ impl Lines<'_> {
             near.as_ref().map(|near| heart.plan(near, Meet::Apart)),
             self.along_skeleton(group, arms, heart, found),
         ];
-        let others = others.into_iter().flatten().map(|ways| (ways, better_than as fn(f64) -> f64));
+        let others = others.into_iter().flatten().map(|ways| (ways, prices::other_plan as fn(f64) -> f64));
         // Where all lines show their course, they go on as they come.
         let are_sure = arms.iter().all(is_sure);
-        let below = if are_sure { plainly_better_than } else { better_than };
+        let below = if are_sure { prices::bent_plan } else { prices::other_plan };
         let curves = pairings(arms.len()).iter().map(|pairs| heart.curves(arms, pairs));
         let curves = curves.map(|ways| (ways, below as fn(f64) -> f64));
         for (ways, below) in others.chain(curves) {
-            if best.0 <= GOOD_PX2 {
+            if best.0 <= RASTER_PX2 {
                 break;
             }
             if let Some(cost) = trial.cost(&ways, below(best.0)) {
@@ -496,7 +498,7 @@ impl Lines<'_> {
                 if let Some(way) = ways.get_mut(index) {
                     *way = Way { one, other: None, points };
                 }
-                if let Some(cost) = trial.cost(&ways, better_than(best.0)) {
+                if let Some(cost) = trial.cost(&ways, prices::other_plan(best.0)) {
                     best = (cost, ways);
                 }
             }
