@@ -16,7 +16,7 @@ use super::junction::{ArmOf, Junctions, Lines, MOST_ARMS, Way, is_sure};
 use super::meeting::{Heart, Meet};
 use super::site::{Site, slack_px};
 use super::trial::Trial;
-use crate::centreline::fit::prices::VERTEX_PX2;
+use crate::centreline::fit::prices::{RASTER_PX2, VERTEX_PX2};
 use crate::disjoint_sets::DisjointSets;
 use crate::picture::Pixel;
 use std::borrow::Cow;
@@ -119,7 +119,7 @@ impl Lines<'_> {
         let heart = self.heart(nodes, owner);
         // In two places or more, each of its lines would have one of its own.
         #[expect(clippy::cast_precision_loss, reason = "at most 8")]
-        let most = VERTEX_PX2 * arms.len() as f64;
+        let most = RASTER_PX2 + VERTEX_PX2 * arms.len() as f64;
         let rays =
             || -> Vec<ArmOf> { arms.iter().map(|one| self.ray(one, &heart).unwrap_or(*one)).collect() };
         let good = |star: &(f64, Vec<Way>)| star.0 <= most;
@@ -137,8 +137,8 @@ impl Lines<'_> {
             return None;
         }
         let cost = trial.cost(&ways, f64::INFINITY)?;
-        let settled = trial.settle(ways, cost);
-        Some((trial.cost(&settled, f64::INFINITY)?, settled))
+        let (ways, cost) = trial.settle(ways, cost);
+        Some((cost, ways))
     }
 
     /// A line too short to show its course, straight on to where it ends.

@@ -59,6 +59,13 @@ pub(super) struct Way {
     pub(super) points: Vec<PxPoint>,
 }
 
+/// How the lines of a junction go on.
+pub(super) struct Plan {
+    pub(super) ways: Vec<Way>,
+    /// The end of a line that is none.
+    pub(super) dropped: Option<End>,
+}
+
 /// What was found out about all edges.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Junctions {
@@ -440,24 +447,26 @@ impl Lines<'_> {
         } else {
             let heart = self.heart(group, owner);
             if !heart.resolve_point(&arms, |end| self.sites_from(end), found) {
-                let ways = self.best(group, &heart, &arms, found);
+                let Plan { ways, dropped } = self.best(group, &heart, &arms, found);
                 found.take(owner, as_one(ways));
+                dropped.into_iter().for_each(|end| found.drop_line(end));
             }
         }
     }
 
     /// Of several ways to connect the arms of a junction the one that, drawn by pens of their widths, gives the ink.
-    fn best(&self, group: &[usize], heart: &Heart<'_>, arms: &[ArmOf], found: &Junctions) -> Vec<Way> {
+    fn best(&self, group: &[usize], heart: &Heart<'_>, arms: &[ArmOf], found: &Junctions) -> Plan {
         let straight = heart.plan(arms, Meet::WherePenWas);
+        let all = |ways: Vec<Way>| Plan { ways, dropped: None };
         if arms.len() > MOST_ARMS {
-            return straight;
+            return all(straight);
         }
         let sites: Vec<Cow<'_, [Site]>> = arms.iter().map(|one| self.sites_from(one.end)).collect();
-        let Some(trial) = Trial::new(self.scan, heart.centre, arms, &sites) else { return straight };
+        let Some(trial) = Trial::new(self.scan, heart.centre, arms, &sites) else { return all(straight) };
         let cost = trial.cost(&straight, f64::INFINITY).unwrap_or(f64::INFINITY);
         let mut best = (cost, straight);
         if best.0 <= RASTER_PX2 {
-            return best.1;
+            return self.without_short(heart, arms, &sites, &trial, best.0).unwrap_or(all(best.1));
         }
         let near: Option<Vec<ArmOf>> =
             arms.iter().map(|one| Some(ArmOf { arm: self.arm(one.end, SHORT)?, ..*one })).collect();
@@ -503,7 +512,8 @@ impl Lines<'_> {
                 }
             }
         }
-        trial.settle(best.1, best.0)
+        let (ways, cost) = trial.settle(best.1, best.0);
+        self.without_short(heart, arms, &sites, &trial, cost).unwrap_or(all(ways))
     }
 
     /// The arms of a junction connected as the skeleton runs.
@@ -659,7 +669,7 @@ impl Lines<'_> {
 }
 
 /// Of two lines that end in the same place and meet nothing else there: one with a corner.
-fn as_one(ways: Vec<Way>) -> Vec<Way> {
+pub(super) fn as_one(ways: Vec<Way>) -> Vec<Way> {
     /// Nearer ends are one place, px.
     const SAME_PX: f64 = 1.0;
     let [Way { one, other: None, points }, Way { one: other, other: None, points: theirs }] = ways.as_slice()

@@ -124,8 +124,9 @@ impl<'a> Redrawn<'a> {
     fn add_strokes(&mut self) {
         /// Half the length that a stroke begins with, px.
         const HALF_PX: [f64; 2] = [0.5, 2.0];
+        const HALF: f64 = core::f64::consts::FRAC_1_SQRT_2;
         const ALONG: [PxVec; 4] =
-            [PxVec::new(1.0, 0.0), PxVec::new(0.0, 1.0), PxVec::new(0.7, 0.7), PxVec::new(0.7, -0.7)];
+            [PxVec::new(1.0, 0.0), PxVec::new(0.0, 1.0), PxVec::new(HALF, HALF), PxVec::new(HALF, -HALF)];
         for _ in 0..MOST_ADDED {
             if self.cost <= STROKE_PX2 {
                 return;

@@ -15,6 +15,7 @@ use std::borrow::Cow;
 /// The ink around a junction.
 pub(super) struct Trial<'a> {
     arms: &'a [ArmOf],
+    radius_px: f64,
     /// Where the undisturbed part of each arm begins; of one without such a part its origin.
     roots: Vec<Option<PxPoint>>,
     canvas: Canvas,
@@ -34,7 +35,17 @@ impl<'a> Trial<'a> {
             let first = sites.get(one.arm.skip).or(sites.last())?;
             Some(first.centre.distance(centre) + 0.5 * one.arm.width_px + 2.0)
         };
-        let radius_px = arms.iter().zip(sites).filter_map(far).fold(0.0, f64::max);
+        Self::within(scan, centre, arms.iter().zip(sites).filter_map(far).fold(0.0, f64::max), arms, sites)
+    }
+
+    /// The same, for what lies within a radius.
+    pub(super) fn within(
+        scan: Scan<'_>,
+        centre: PxPoint,
+        radius_px: f64,
+        arms: &'a [ArmOf],
+        sites: &[Cow<'_, [Site]>],
+    ) -> Option<Self> {
         let canvas = Canvas::around(scan, centre, radius_px)?;
         let (mut roots, mut courses) = (Vec::new(), Vec::new());
         for (one, sites) in arms.iter().zip(sites) {
@@ -48,7 +59,12 @@ impl<'a> Trial<'a> {
             canvas.add_pen(course.map(|at| (at, half_px)), &mut courses);
         }
         let courses = canvas.layer(&courses);
-        Some(Self { arms, roots, canvas, courses })
+        Some(Self { arms, radius_px, roots, canvas, courses })
+    }
+
+    /// How far from the junction's middle ink is looked at, px.
+    pub(super) fn radius_px(&self) -> f64 {
+        self.radius_px
     }
 
     /// How much the ink around the junction differs from what pens draw that go these ways, when that is less than
@@ -83,13 +99,13 @@ impl<'a> Trial<'a> {
         self.roots.get(index).copied().flatten()
     }
 
-    /// The ways with their few places moved to where they cost least, from `cost` down.
-    pub(super) fn settle(&self, ways: Vec<Way>, cost: f64) -> Vec<Way> {
+    /// The ways with their few places moved to where they cost least, from `cost` down, and what they cost there.
+    pub(super) fn settle(&self, ways: Vec<Way>, cost: f64) -> (Vec<Way>, f64) {
         /// Ways with more places are curves.
         const MOST_PLACES: usize = 2;
         const MOST_LOOKS: usize = 96;
         if self.arms.iter().any(|one| one.arm.width_px < WIDE_PX) {
-            return ways;
+            return (ways, cost);
         }
         let few = |ways: &[Way]| {
             distinct(
@@ -121,6 +137,6 @@ impl<'a> Trial<'a> {
                 at != start
             },
         );
-        fit.0
+        fit
     }
 }
