@@ -1,8 +1,8 @@
 //! [`Canvas`]: the ink that pens are held against, and how far what they draw is from it.
 //!
-//! Only pixels on the wrong side of a pen's edge cost anything, and of a good plan there are few. So all pens are drawn
-//! first by squares alone. How far a pixel that contradicts them lies off is found for it alone, as long as the plan can
-//! still win.
+//! Only pixels on the wrong side of a pen's edge cost anything, and of a good plan there are few. So all pens
+//! are drawn first by squares alone. How far a pixel that contradicts them lies off is found for it alone, as
+//! long as the plan can still win.
 
 use super::pens::{Bundle, COLUMNS, Capsule, INK, LANES, PAPER, capsules};
 use super::prices::FARTHEST_PX;
@@ -97,8 +97,8 @@ impl Canvas {
         Layer { cells, pens: Bundle::of(pens) }
     }
 
-    /// How much the ink differs from what a layer's pens and some more leave, when that is less than `limit`: the
-    /// squared distances of all pixels whose middles are on the wrong side of the pens' edges, px².
+    /// How much the ink differs from what a layer's pens and some more leave, when that is less than `limit`:
+    /// the squared distances of all pixels whose middles are on the wrong side of the pens' edges, px².
     pub(crate) fn residual(&self, under: &Layer, pens: &[Capsule], limit: f64) -> Option<f64> {
         let bundles = Bundle::of(pens);
         let outside_px = |x: f32, y: f32| {
@@ -131,7 +131,8 @@ impl Canvas {
         (residual < limit).then_some(residual)
     }
 
-    /// The pixel of ink that some pens leave farthest from their edges, and how far, px; none where no ink is bare.
+    /// The pixel of ink that some pens leave farthest from their edges, and how far, px; none where no ink is
+    /// bare.
     pub(crate) fn barest(&self, pens: &[Capsule]) -> Option<(PxPoint, f64)> {
         let layer = self.layer(pens);
         let mut best: Option<(PxPoint, f32)> = None;

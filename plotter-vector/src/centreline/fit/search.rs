@@ -1,15 +1,17 @@
-//! A pattern search: places go a step along the raster's axes as long as that costs less, with shorter and shorter steps.
+//! A pattern search: places go a step along the raster's axes as long as that costs less, with shorter and
+//! shorter steps.
 //!
 //! Source: R. Hooke, T. A. Jeeves, "Direct search solution of numerical and statistical problems" (1961).
 
 use super::prices::FARTHEST_PX;
 use crate::{PxVec, stroke::PxPoint};
 
-/// How far places move at a time, px: from what thinning cuts off a corner down to what the raster shows of an edge.
+/// How far places move at a time, px: from what thinning cuts off a corner down to what the raster shows of
+/// an edge.
 const STEPS_PX: [f64; 3] = [0.8, 0.4, 0.2];
 
-/// Moves the places of a fit by each step, so many times around as that is better. `shift` moves those that lie in one
-/// place, and tells whether that was better.
+/// Moves the places of a fit by each step, so many times around as that is better. `shift` moves those that
+/// lie in one place, and tells whether that was better.
 pub(crate) fn settle<F>(
     fit: &mut F,
     rounds: usize,
@@ -40,8 +42,9 @@ pub(crate) fn distinct(places: impl Iterator<Item = PxPoint>) -> Vec<PxPoint> {
     found
 }
 
-/// Where a place goes by steps of one length, and what it costs there. `cost_at` tells what it costs in a place where that
-/// is better than so much; by each step it goes no farther than twice as far as ink tells anything.
+/// Where a place goes by steps of one length, and what it costs there. `cost_at` tells what it costs in a
+/// place where that is better than so much; by each step it goes no farther than twice as far as ink tells
+/// anything.
 pub(crate) fn shifted(
     start: PxPoint,
     step_px: f64,

@@ -8,7 +8,8 @@ use crate::centreline::fit::prices::STROKE_PX2;
 use std::borrow::Cow;
 
 impl Lines<'_> {
-    /// The arms without a short one whose ink the pens of the others leave nearly as well, given what all of them cost.
+    /// The arms without a short one whose ink the pens of the others leave nearly as well, given what all of
+    /// them cost.
     pub(super) fn without_short(
         &self,
         heart: &Heart<'_>,
