@@ -2,4 +2,5 @@
 //! junctions.
 
 pub(crate) mod centrelines;
+pub(crate) mod fit;
 pub(crate) mod graph;

@@ -6,7 +6,7 @@ use super::corners::{crossing, rim_px, straight};
 use super::crowd::Crowd;
 use super::flat::Flat;
 use super::lines::{SPACING_PX, cosine};
-use crate::stroke::{PxPoint, PxVec};
+use crate::stroke::{PxPoint, PxVec, turn::CORNER_COS};
 
 /// Places of a line before its end that tell where it goes on.
 const ARM: usize = 7;
@@ -17,9 +17,6 @@ const LEAST_OFF_PX: f64 = 0.08;
 
 /// Places that tell whether the line is a curve: one of a radius of 70 px is 1 px off a straight line over them.
 const LONG_ARM: usize = 12;
-
-/// Lines that meet at a smaller angle have one ink for too long: cosine of 25 degrees.
-const ALONG_COS: f64 = 0.906;
 
 /// Lines whose rims are nearer to each other than this, and a tenth of a width, have one ink, px.
 const CLEAR_PX: f64 = 1.5;
@@ -115,7 +112,8 @@ fn tail(
             }
             let way = *c - *a;
             let length = way.length();
-            if length < 1e-9 || cosine(way, back).abs() > ALONG_COS {
+            // Lines that meet at a smaller angle than a corner's have one ink for too long.
+            if length < 1e-9 || cosine(way, back).abs() > CORNER_COS {
                 return None;
             }
             let way = way / length;

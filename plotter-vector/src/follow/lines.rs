@@ -11,7 +11,7 @@ use crate::{
     areas::split_by_width,
     ink::{despeckle, pen_width_px},
     picture::{Bitmap, Gray, Pixel},
-    stroke::{Bounded, PxPoint, PxVec},
+    stroke::{Bounded, PxPoint, PxVec, turn::CORNER_COS},
     trace::Vectorizer,
 };
 
@@ -32,9 +32,6 @@ const MARGIN_SHARE: f64 = 0.15;
 /// The same for sharp turns, whose arms are one piece of ink for a while.
 const TURN_MARGIN_WIDTHS: f64 = 16.0;
 const TURN_MARGIN_SHARE: f64 = 0.27;
-
-/// A turn by more than this is a corner, which stays: cosine of 25 degrees.
-const CORNER_COS: f64 = 0.906;
 
 /// A piece of a line's middle.
 #[derive(Clone, Debug)]

@@ -1,14 +1,11 @@
 //! [`joined`] and [`begun_straight`]: a corner is inside of a line, not where lines end.
 
 use super::lines::cosine;
-use crate::stroke::PxPoint;
+use crate::stroke::{PxPoint, turn::CORNER_COS};
 
 /// How far to both sides the direction at a place is looked at, places about 2 px from each other.
 const NEAR: usize = 3;
 const FAR: usize = 12;
-
-/// A loop that turns by more where it begins has a corner there: cosine of 25 degrees.
-const CORNER_COS: f64 = 0.906;
 
 /// What looks at the arms of a corner goes along a line from its first place to its last one, so a loop must not begin in a corner. One
 /// that does begins where it turns least instead. Other lines stay.

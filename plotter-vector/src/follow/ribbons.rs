@@ -14,7 +14,7 @@ use super::crowd::Crowd;
 use super::flat::Flat;
 use super::ink_map::{BLUR_PX, InkMap};
 use super::lines::{SPACING_PX, cosine, count_f64};
-use crate::stroke::{PxPoint, PxVec};
+use crate::stroke::{PxPoint, PxVec, turn::CORNER_COS};
 use core::ops::Range;
 use std::f64::consts::{PI, SQRT_2};
 
@@ -45,9 +45,6 @@ const CLEAR_PX: f64 = 1.0;
 
 /// Beside another line's end, and so far from its ink, there may be ink that it leaves unexplained, px.
 const ENDS_PX: f64 = 1.0;
-
-/// A turn by more is a corner: cosine of 25 degrees.
-const CORNER_COS: f64 = 0.906;
 
 /// Places of a loop before its first and behind its last one that are looked at again.
 const AROUND: usize = 12;

@@ -9,6 +9,7 @@ pub(crate) mod on_sheet;
 mod pre_elimination;
 pub(crate) mod simplify;
 pub(crate) mod stroke_op;
+pub(crate) mod turn;
 
 pub(crate) use crate::picture::{PxPoint, PxVec};
 pub use cubic::Cubic;

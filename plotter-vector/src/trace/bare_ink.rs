@@ -296,9 +296,9 @@ impl BareInk<'_> {
         let mut needed = vec![Vec::new(); border.len()];
         let mut left = Vec::new();
         for at in bare {
-            let away = |site: &PxPoint| site.distance(at.into());
-            let nearest = border.iter().enumerate().min_by(|a, b| away(a.1).total_cmp(&away(b.1)));
-            match nearest.filter(|(_, site)| away(site) <= reach_px) {
+            let squared = |site: &PxPoint| (*site - PxPoint::from(at)).length_squared();
+            let nearest = border.iter().enumerate().min_by(|a, b| squared(a.1).total_cmp(&squared(b.1)));
+            match nearest.filter(|(_, site)| site.distance(at.into()) <= reach_px) {
                 Some((index, _)) => {
                     if let Some(needed) = needed.get_mut(index) {
                         needed.push(at);

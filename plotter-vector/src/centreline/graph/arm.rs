@@ -1,6 +1,6 @@
 //! [`Arm`]: a line that leaves a junction, and where it would go on to inside it.
 
-use super::site::Site;
+use super::site::{Site, slack_px};
 use crate::stroke::{PxPoint, PxVec};
 
 /// Fewest sites that give a direction.
@@ -34,7 +34,7 @@ impl Arm {
     /// belong to the next junction. Of its course at most `longest` sites are looked at.
     pub(crate) fn of(sites: &[Site], reserved: usize, longest: usize) -> Option<Self> {
         let width_px = typical_width_px(sites);
-        let limit_px = width_px + (0.15 * width_px).max(0.75);
+        let limit_px = width_px + slack_px(width_px);
         // The width of a slanted line goes up and down by a pixel's part from site to site.
         let is_calm = |three: &[Site]| three.iter().map(|site| site.width_px).sum::<f64>() <= 3.0 * limit_px;
         let free = sites.len().saturating_sub(reserved).max(sites.len().div_ceil(2));

@@ -6,15 +6,15 @@
 //!    |            |/          the ink is filled, and thinning sees the shorter way
 //! ```
 
-use super::redraw::{DROPPED_PX2, Redrawn, STEPS_PX};
+use super::redraw::Redrawn;
+use crate::centreline::fit::prices::VERTEX_PX2;
 use crate::stroke::{PxPoint, PxVec};
 
 /// Most ends that are bent.
 const MOST_BENT: usize = 2;
 
-/// Most ways of bending an end in which all vertices are moved, and how far at a time, px.
+/// Most ways of bending an end in which all vertices are moved.
 const MOST_TRIED: usize = 3;
-const FINE_PX: [f64; 2] = [0.4, 0.2];
 
 /// How far from a stroke's end its new corner is looked for, and how far along the other stroke its new end, widths of the pen.
 const AWAY_WIDTHS: [f64; 2] = [1.5, 2.5];
@@ -26,8 +26,7 @@ impl Redrawn<'_> {
     /// Bends ends of strokes where that meets the ink so much better that it is worth a vertex.
     pub(super) fn bend_ends(&mut self) {
         for _ in 0..MOST_BENT {
-            let most = (0.5 * self.cost).min(self.cost - DROPPED_PX2);
-            if most <= 0.0 {
+            if self.cost <= VERTEX_PX2 {
                 return;
             }
             let ends = (0..self.strokes.len()).flat_map(|index| [(index, false), (index, true)]);
@@ -35,20 +34,13 @@ impl Redrawn<'_> {
             all.sort_by(|a, b| a.cost.total_cmp(&b.cost));
             all.truncate(MOST_TRIED);
             for bent in &mut all {
-                FINE_PX.into_iter().for_each(|step_px| bent.descend(step_px));
+                bent.settle_all();
                 while bent.join_ends() {}
             }
-            let good = all.into_iter().filter(|bent| bent.cost <= most);
+            let good = all.into_iter().filter(|bent| bent.worth() < self.worth());
             let Some(best) = good.min_by(|a, b| a.worth().total_cmp(&b.worth())) else { return };
             *self = best;
         }
-    }
-
-    /// The cost, with what its vertices are worth.
-    fn worth(&self) -> f64 {
-        #[expect(clippy::cast_precision_loss, reason = "some tens")]
-        let vertices = self.strokes.iter().map(Vec::len).sum::<usize>() as f64;
-        self.cost + DROPPED_PX2 * vertices
     }
 
     /// A stroke's end bent in all ways that are tried.
@@ -88,11 +80,7 @@ impl Redrawn<'_> {
                 *stroke = bent;
             }
             let mut other = self.with(strokes);
-            for step_px in STEPS_PX {
-                for _ in 0..2 {
-                    places.iter().for_each(|vertex| other.move_vertex((index, *vertex), step_px));
-                }
-            }
+            other.settle_some(&places.map(|vertex| (index, vertex)), 2);
             found.push(other);
         }
         found

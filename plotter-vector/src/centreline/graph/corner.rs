@@ -10,15 +10,15 @@
 //! A tight bend is told from a corner by the ink: a pen that went to P has left ink around P, half its width far.
 
 use super::junction::{Connection, Junctions};
-use super::site::{Role, Scan, Site};
+use super::site::{Role, Scan, Site, surely_px};
 use super::sites::Sites;
 use super::{End, Graph};
-use crate::stroke::{PxPoint, PxVec};
+use crate::centreline::fit::prices::{GAIN_PX2, VERTEX_PX2, WIDE_PX};
+use crate::centreline::fit::search::{settle, shifted};
+use crate::centreline::fit::{Canvas, Capsule};
+use crate::stroke::{PxPoint, PxVec, turn::CORNER_COS};
 use core::ops::Range;
 use std::collections::HashMap;
-
-/// Least turn of a corner: cos 25°. Less is within the tolerance of any drawing, or a curve.
-pub(super) const TURN_COS: f64 = 0.906_307_8;
 
 /// Greatest root mean square distance of the sites of a straight part, px.
 const STRAIGHT_PX: f64 = 0.4;
@@ -223,7 +223,7 @@ impl Line<'_> {
     fn corners(&self, own: &Range<usize>, scan: Scan<'_>) -> Vec<Corner> {
         /// Sites to either side whose chords give a first look at the turn.
         const LOOK: usize = 6;
-        /// Square of the cosine of a turn that is none, a little above that of [`TURN_COS`]: seen without a root.
+        /// Square of the cosine of a turn that is none, a little above that of [`CORNER_COS`]: seen without a root.
         const STRAIGHT_COS2: f64 = 0.83;
         let count = self.sites.len();
         if count <= 2 * LOOK {
@@ -241,7 +241,7 @@ impl Line<'_> {
         };
         let turns: Vec<f64> = (0..count).map(|index| turn(index).unwrap_or(1.0)).collect();
         let mut found = Vec::new();
-        for (index, turn) in turns.iter().enumerate().filter(|(_, turn)| **turn < TURN_COS) {
+        for (index, turn) in turns.iter().enumerate().filter(|(_, turn)| **turn < CORNER_COS) {
             if !own.contains(&index) {
                 continue;
             }
@@ -276,7 +276,7 @@ impl Line<'_> {
         // The line before runs away from the corner, so it is turned around.
         let cos = -u.dot(v);
         let cross = u.cross(v);
-        if cos > TURN_COS || cross.abs() < 0.1 {
+        if cos > CORNER_COS || cross.abs() < 0.1 {
             return None;
         }
         let t = ((b.x - a.x) * v.y - (b.y - a.y) * v.x) / cross;
@@ -286,13 +286,59 @@ impl Line<'_> {
             return None;
         }
         let half_px = 0.5 * width_px;
-        let pen_was_at = |at: &PxPoint| scan.pen_was_at(*at, half_px - (0.1 * width_px).max(0.45));
+        let pen_was_at = |at: &PxPoint| scan.pen_was_at(*at, surely_px(half_px));
         // Of a sharp corner the raster shows the tip a little too far out.
         let most_px = if cos < SHARP_COS { 0.5 } else { 0.0 };
         let inwards = direction(at, inside).unwrap_or_default();
         let moved = [0.0, 0.25, 0.5].into_iter().take_while(|off_px| *off_px <= most_px);
-        let at = moved.map(|off_px| at + inwards * off_px).find(pen_was_at)?;
+        let seen = moved.map(|off_px| at + inwards * off_px).find(pen_was_at);
+        let at = seen.or_else(|| self.fitted(scan, (index, gap), at, width_px))?;
         Some(Corner { index, gap, at, cos })
+    }
+
+    /// Where the straight parts beside a site meet so that their pen leaves more of the ink than one that goes as the
+    /// sites do: what no round pen has drawn, such as the foot of a printed letter, has no corner that a pen went to.
+    fn fitted(
+        &self,
+        scan: Scan<'_>,
+        (index, gap): (usize, usize),
+        at: PxPoint,
+        width_px: f64,
+    ) -> Option<PxPoint> {
+        let half_px = 0.5 * width_px;
+        if width_px < WIDE_PX {
+            return None;
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a width below 200 px")]
+        let canvas = Canvas::around(scan, self.place(index, 0, 0)?, gap as f64 + half_px)?;
+        let way = |steps: Range<usize>| steps.filter_map(|step| self.place(index, step, 2 * gap));
+        let draw = |places: &mut dyn Iterator<Item = PxPoint>, pens: &mut Vec<Capsule>| {
+            canvas.add_pen(places.map(|at| (at, half_px)), pens);
+        };
+        let (mut sides, mut course) = (Vec::new(), Vec::new());
+        draw(&mut way(0..gap + 1), &mut sides);
+        draw(&mut way(3 * gap..4 * gap + 1), &mut sides);
+        draw(&mut way(gap..3 * gap + 1), &mut course);
+        let sides = canvas.layer(&sides);
+        let as_it_is = canvas.residual(&sides, &course, f64::INFINITY)?;
+        let (before, after) = (self.place(index, 0, gap)?, self.place(index, gap, 0)?);
+        let cost = |at: PxPoint, limit: f64| {
+            let mut pens = Vec::new();
+            draw(&mut [before, at, after].into_iter(), &mut pens);
+            canvas.residual(&sides, &pens, limit)
+        };
+        let mut fit = (at, cost(at, f64::INFINITY)?);
+        settle(
+            &mut fit,
+            1,
+            |(at, _)| vec![*at],
+            |(at, least), start, step_px| {
+                (*at, *least) = shifted(start, step_px, *least, |to, limit| cost(to, limit - GAIN_PX2));
+                *at != start
+            },
+        );
+        let (at, cost) = fit;
+        (cost + VERTEX_PX2 <= as_it_is).then_some(at)
     }
 }
 

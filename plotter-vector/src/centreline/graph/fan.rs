@@ -14,8 +14,9 @@ use super::arm::{Arm, typical_width_px};
 use super::corner::direction;
 use super::junction::{ArmOf, Junctions, Lines, MOST_ARMS, Way, is_sure};
 use super::meeting::{Heart, Meet};
-use super::site::Site;
+use super::site::{Site, slack_px};
 use super::trial::Trial;
+use crate::centreline::fit::prices::{RASTER_PX2, VERTEX_PX2};
 use crate::disjoint_sets::DisjointSets;
 use crate::picture::Pixel;
 use std::borrow::Cow;
@@ -29,9 +30,6 @@ const MOST_NODES: usize = 12;
 
 /// Calm sites in a row that show the course of a line of its own.
 const CALM_SITES: usize = 3;
-
-/// What one point may cost for each of its lines, px².
-const COST_PER_ARM_PX2: f64 = 0.4;
 
 /// Lines that all go through one point, and how they go on there.
 pub(super) struct Fan {
@@ -59,7 +57,8 @@ impl Lines<'_> {
         if thinnest_px <= self.scan.thin_px() || length > LONGEST_IN_WIDTHS * thinnest_px {
             return None;
         }
-        let calm = |some: &[Site]| some.iter().all(|site| site.width_px <= 1.15 * thinnest_px);
+        let calm =
+            |some: &[Site]| some.iter().all(|site| site.width_px <= thinnest_px + slack_px(thinnest_px));
         (!sites.windows(CALM_SITES).any(calm)).then_some((a, b))
     }
 
@@ -118,8 +117,9 @@ impl Lines<'_> {
             return None;
         }
         let heart = self.heart(nodes, owner);
+        // In two places or more, each of its lines would have one of its own.
         #[expect(clippy::cast_precision_loss, reason = "at most 8")]
-        let most = COST_PER_ARM_PX2 * arms.len() as f64;
+        let most = RASTER_PX2 + VERTEX_PX2 * arms.len() as f64;
         let rays =
             || -> Vec<ArmOf> { arms.iter().map(|one| self.ray(one, &heart).unwrap_or(*one)).collect() };
         let good = |star: &(f64, Vec<Way>)| star.0 <= most;
@@ -137,8 +137,8 @@ impl Lines<'_> {
             return None;
         }
         let cost = trial.cost(&ways, f64::INFINITY)?;
-        let settled = trial.settle(ways, cost);
-        Some((trial.cost(&settled, f64::INFINITY)?, settled))
+        let (ways, cost) = trial.settle(ways, cost);
+        Some((cost, ways))
     }
 
     /// A line too short to show its course, straight on to where it ends.

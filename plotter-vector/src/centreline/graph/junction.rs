@@ -5,19 +5,21 @@
 //! along which both lines run together: it is wider than a line, and the arms continue each other across it.
 
 use super::arm::{Arm, LONG, SHORT};
-use super::corner::{TURN_COS, direction};
+use super::corner::direction;
 use super::fan::Fan;
 use super::line_end::{line_end, seated_across, tail};
 use super::meeting::{Heart, Meet, partners};
 use super::near::Near;
-use super::site::{Scan, Site};
+use super::site::{Scan, Site, slack_px};
 use super::sites::Sites;
 use super::spur::Spurs;
-use super::trial::{GOOD_PX2, Trial, better_than, plainly_better_than};
+use super::trial::Trial;
 use super::{End, Graph};
+use crate::centreline::fit::prices::{self, RASTER_PX2};
 use crate::disjoint_sets::DisjointSets;
 use crate::ink::hairlines::Hairlines;
-use crate::{PxVec, picture::Pixel, stroke::PxPoint};
+use crate::stroke::{PxPoint, turn::CORNER_COS};
+use crate::{PxVec, picture::Pixel};
 use core::cell::{OnceCell, RefCell};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -55,6 +57,13 @@ pub(super) struct Way {
     pub(super) other: Option<ArmOf>,
     /// Places between the undisturbed parts of both arms, or from there to the end.
     pub(super) points: Vec<PxPoint>,
+}
+
+/// How the lines of a junction go on.
+pub(super) struct Plan {
+    pub(super) ways: Vec<Way>,
+    /// The end of a line that is none.
+    pub(super) dropped: Option<End>,
 }
 
 /// What was found out about all edges.
@@ -107,7 +116,7 @@ impl Junctions {
         self.set_skip(one.end, one.arm.skip);
         self.set_skip(other.end, other.arm.skip);
         let (a, b) = (one.arm.direction, other.arm.direction);
-        let corner = points.len() == 1 && -a.dot(b) < TURN_COS;
+        let corner = points.len() == 1 && -a.dot(b) < CORNER_COS;
         self.connections.push(Connection {
             owner,
             from: one.end,
@@ -320,7 +329,7 @@ impl Lines<'_> {
         if width_px <= self.scan.thin_px() || !sure || length > LONGEST_IN_WIDTHS * width_px {
             return None;
         }
-        let wide = sites.iter().filter(|site| site.width_px > 1.15 * width_px).count();
+        let wide = sites.iter().filter(|site| site.width_px > width_px + slack_px(width_px)).count();
         if wide * 10 < sites.len() * 6 {
             return None;
         }
@@ -438,24 +447,26 @@ impl Lines<'_> {
         } else {
             let heart = self.heart(group, owner);
             if !heart.resolve_point(&arms, |end| self.sites_from(end), found) {
-                let ways = self.best(group, &heart, &arms, found);
+                let Plan { ways, dropped } = self.best(group, &heart, &arms, found);
                 found.take(owner, as_one(ways));
+                dropped.into_iter().for_each(|end| found.drop_line(end));
             }
         }
     }
 
     /// Of several ways to connect the arms of a junction the one that, drawn by pens of their widths, gives the ink.
-    fn best(&self, group: &[usize], heart: &Heart<'_>, arms: &[ArmOf], found: &Junctions) -> Vec<Way> {
+    fn best(&self, group: &[usize], heart: &Heart<'_>, arms: &[ArmOf], found: &Junctions) -> Plan {
         let straight = heart.plan(arms, Meet::WherePenWas);
+        let all = |ways: Vec<Way>| Plan { ways, dropped: None };
         if arms.len() > MOST_ARMS {
-            return straight;
+            return all(straight);
         }
         let sites: Vec<Cow<'_, [Site]>> = arms.iter().map(|one| self.sites_from(one.end)).collect();
-        let Some(trial) = Trial::new(self.scan, heart.centre, arms, &sites) else { return straight };
+        let Some(trial) = Trial::new(self.scan, heart.centre, arms, &sites) else { return all(straight) };
         let cost = trial.cost(&straight, f64::INFINITY).unwrap_or(f64::INFINITY);
         let mut best = (cost, straight);
-        if best.0 <= GOOD_PX2 {
-            return best.1;
+        if best.0 <= RASTER_PX2 {
+            return self.without_short(heart, arms, &sites, &trial, best.0).unwrap_or(all(best.1));
         }
         let near: Option<Vec<ArmOf>> =
             arms.iter().map(|one| Some(ArmOf { arm: self.arm(one.end, SHORT)?, ..*one })).collect();
@@ -466,14 +477,14 @@ impl Lines<'_> {
             near.as_ref().map(|near| heart.plan(near, Meet::Apart)),
             self.along_skeleton(group, arms, heart, found),
         ];
-        let others = others.into_iter().flatten().map(|ways| (ways, better_than as fn(f64) -> f64));
+        let others = others.into_iter().flatten().map(|ways| (ways, prices::other_plan as fn(f64) -> f64));
         // Where all lines show their course, they go on as they come.
         let are_sure = arms.iter().all(is_sure);
-        let below = if are_sure { plainly_better_than } else { better_than };
+        let below = if are_sure { prices::bent_plan } else { prices::other_plan };
         let curves = pairings(arms.len()).iter().map(|pairs| heart.curves(arms, pairs));
         let curves = curves.map(|ways| (ways, below as fn(f64) -> f64));
         for (ways, below) in others.chain(curves) {
-            if best.0 <= GOOD_PX2 {
+            if best.0 <= RASTER_PX2 {
                 break;
             }
             if let Some(cost) = trial.cost(&ways, below(best.0)) {
@@ -496,12 +507,13 @@ impl Lines<'_> {
                 if let Some(way) = ways.get_mut(index) {
                     *way = Way { one, other: None, points };
                 }
-                if let Some(cost) = trial.cost(&ways, better_than(best.0)) {
+                if let Some(cost) = trial.cost(&ways, prices::other_plan(best.0)) {
                     best = (cost, ways);
                 }
             }
         }
-        trial.settle(best.1, best.0)
+        let (ways, cost) = trial.settle(best.1, best.0);
+        self.without_short(heart, arms, &sites, &trial, cost).unwrap_or(all(ways))
     }
 
     /// The arms of a junction connected as the skeleton runs.
@@ -657,7 +669,7 @@ impl Lines<'_> {
 }
 
 /// Of two lines that end in the same place and meet nothing else there: one with a corner.
-fn as_one(ways: Vec<Way>) -> Vec<Way> {
+pub(super) fn as_one(ways: Vec<Way>) -> Vec<Way> {
     /// Nearer ends are one place, px.
     const SAME_PX: f64 = 1.0;
     let [Way { one, other: None, points }, Way { one: other, other: None, points: theirs }] = ways.as_slice()

@@ -1,13 +1,11 @@
 //! [`Redrawn::leave_out`]: a mark without the strokes and vertices that its ink does not need.
 
-use super::redraw::{DROPPED_PX2, Redrawn, STEPS_PX};
+use super::redraw::Redrawn;
+use crate::centreline::fit::prices::STROKE_PX2;
 use crate::stroke::{PxPoint, PxVec};
 
-/// What the ink may be met worse in all, px².
-const MOST_WORSE_PX2: f64 = 0.75;
-
 /// Much more than moving the vertices beside a gap can mend, px².
-const HOPELESS_PX2: f64 = 3.0;
+const HOPELESS_PX2: f64 = 2.0 * STROKE_PX2;
 
 /// Ends of two strokes so near each other may be one place, px.
 const SAME_PLACE_PX: f64 = 3.0;
@@ -15,22 +13,19 @@ const SAME_PLACE_PX: f64 = 3.0;
 impl Redrawn<'_> {
     /// Leaves out what the ink does not need, and makes one stroke of two that end in one place.
     pub(super) fn leave_out(&mut self) {
-        let most = self.cost + MOST_WORSE_PX2;
-        self.drop_strokes(most);
-        self.merge_ends(most);
+        self.drop_strokes();
+        self.merge_ends();
         while self.join_ends() {}
-        self.drop_vertices(most);
+        self.drop_vertices();
     }
 
     /// Takes other strokes when they meet the ink nearly as well, once some of their vertices have moved.
-    fn try_others(&mut self, strokes: Vec<Vec<PxPoint>>, vertices: &[(usize, usize)], most: f64) -> bool {
+    fn try_others(&mut self, strokes: Vec<Vec<PxPoint>>, vertices: &[(usize, usize)]) -> bool {
         let mut other = self.with(strokes);
         if other.cost < self.cost + HOPELESS_PX2 {
-            for step_px in STEPS_PX {
-                vertices.iter().for_each(|vertex| other.move_vertex(*vertex, step_px));
-            }
+            other.settle_some(vertices, 1);
         }
-        let taken = other.cost <= most.min(self.cost + DROPPED_PX2);
+        let taken = other.worth() <= self.worth();
         if taken {
             *self = other;
         }
@@ -38,20 +33,20 @@ impl Redrawn<'_> {
     }
 
     /// Strokes whose ink other ones leave too, and dots that the nearest vertex may take the place of.
-    fn drop_strokes(&mut self, most: f64) {
+    fn drop_strokes(&mut self) {
         let mut index = 0;
         while index < self.strokes.len() && self.strokes.len() > 1 {
             let mut strokes = self.strokes.clone();
             let gone = strokes.remove(index);
             let dot = gone.first().copied().filter(|first| gone.iter().all(|at| at == first));
-            let taken = self.try_others(strokes.clone(), &[], most)
-                || dot.is_some_and(|dot| self.try_at_vertex(strokes, dot, most));
+            let taken = self.try_others(strokes.clone(), &[])
+                || dot.is_some_and(|dot| self.try_at_vertex(strokes, dot));
             index += usize::from(!taken);
         }
     }
 
     /// Takes other strokes with their vertex nearest to a place moved there, when they meet the ink nearly as well.
-    fn try_at_vertex(&mut self, mut strokes: Vec<Vec<PxPoint>>, place: PxPoint, most: f64) -> bool {
+    fn try_at_vertex(&mut self, mut strokes: Vec<Vec<PxPoint>>, place: PxPoint) -> bool {
         let nearest =
             strokes.iter().flatten().copied().min_by(|a, b| a.distance(place).total_cmp(&b.distance(place)));
         let Some(nearest) = nearest.filter(|at| at.distance(place) < SAME_PLACE_PX) else { return false };
@@ -60,11 +55,11 @@ impl Redrawn<'_> {
         let around =
             strokes.get(index).and_then(|stroke| stroke.iter().position(|at| *at == place)).unwrap_or(0);
         let vertices = [(index, around), (index, around.saturating_sub(1)), (index, around + 1)];
-        self.try_others(strokes, &vertices, most)
+        self.try_others(strokes, &vertices)
     }
 
     /// Ends of strokes that lie near each other, as one place.
-    fn merge_ends(&mut self, most: f64) {
+    fn merge_ends(&mut self) {
         for index in 0..self.strokes.len() {
             for last in [false, true] {
                 let Some(from) = self.end(index, last) else { continue };
@@ -83,7 +78,7 @@ impl Redrawn<'_> {
                     |stroke: &Vec<PxPoint>| stroke.iter().zip(stroke.iter().skip(1)).any(|(a, b)| a == b);
                 if !strokes.iter().any(same) {
                     let end = strokes.get(index).map_or(0, |stroke| stroke.len().saturating_sub(1));
-                    self.try_others(strokes, &[(index, if last { end } else { 0 })], most);
+                    self.try_others(strokes, &[(index, if last { end } else { 0 })]);
                 }
             }
         }
@@ -146,7 +141,7 @@ impl Redrawn<'_> {
     }
 
     /// Vertices, of strokes with ends these too.
-    fn drop_vertices(&mut self, most: f64) {
+    fn drop_vertices(&mut self) {
         for index in 0..self.strokes.len() {
             let mut vertex = 0;
             while let Some(stroke) = self.strokes.get(index).filter(|stroke| vertex < stroke.len()) {
@@ -164,7 +159,7 @@ impl Redrawn<'_> {
                 let beside = [vertex.saturating_sub(1), vertex].map(|vertex| (index, vertex));
                 let moved: Vec<_> =
                     beside.into_iter().filter(|(_, at)| is_end || closed || *at > 0 && *at < last).collect();
-                if closed && is_end || !self.try_others(strokes, &moved, most) {
+                if closed && is_end || !self.try_others(strokes, &moved) {
                     vertex += 1;
                 }
             }

@@ -12,7 +12,7 @@
 //! What the rim of the picture cuts goes on beyond it: such a line ends on the rim, whatever the angle.
 
 use super::arm::{Arm, typical_width_px};
-use super::site::{Scan, Site};
+use super::site::{Scan, Site, surely_px};
 use crate::{PxVec, picture::Pixel, stroke::PxPoint};
 
 /// Longest way into a corner of a line's end, in radii of the line: 1 / sin 22.5°, where the pen was cut off at 45 degrees.
@@ -54,7 +54,7 @@ pub(super) fn tail(
         return 0;
     }
     let radii = if is_cut { MOST_CUT_RADII } else { MOST_RADII };
-    let least_px = half_px - (0.2 * half_px).max(0.75);
+    let least_px = surely_px(half_px);
     let is_near = |at: &Pixel| PxPoint::from(*at).distance(tip.into()) <= radii * half_px + 1.0;
     let corner = || pixels.take_while(is_near).position(|at| radius_px(at) >= least_px);
     let Some(corner) = (if is_round { Some(0) } else { corner() }) else { return 0 };

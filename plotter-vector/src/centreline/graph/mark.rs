@@ -10,6 +10,7 @@ use super::redraw::Redrawn;
 use super::site::{Rims, Scan, THIN_PX};
 use super::trace::{graph_of, trace};
 use super::{Cuts, Graph, Place, Stretch, Stroke};
+use crate::centreline::fit::Canvas;
 use crate::disjoint_sets::DisjointSets;
 use crate::parallel::each;
 use crate::raster::continuity::neighbours;
@@ -251,7 +252,8 @@ impl Picture {
         let lines: Vec<Vec<PxPoint>> = lines
             .map(|stroke| stroke.curve(Cuts::default(), bounded, SegmentKinds::Lines).vertices)
             .collect();
-        let redrawn = Redrawn::of(&self.ink, lines, width_px)?;
+        let canvas = Canvas::of(&self.ink);
+        let redrawn = Redrawn::of(&canvas, lines, width_px)?;
         Some(redrawn.strokes.iter().map(|stroke| self.fragment(stroke, 2.0 * redrawn.half_px)).collect())
     }
 

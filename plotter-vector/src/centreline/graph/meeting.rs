@@ -8,13 +8,11 @@ use super::End;
 use super::arm::Arm;
 use super::corner::direction;
 use super::junction::{ArmOf, Junctions, Way, bend};
-use super::site::{Scan, Site};
+use super::site::{Scan, Site, slack_px, surely_px};
 use crate::ink::hairlines::Hairlines;
-use crate::{PxVec, picture::Pixel, stroke::PxPoint};
+use crate::stroke::{PxPoint, turn::GOES_ON_COS};
+use crate::{PxVec, picture::Pixel};
 use std::borrow::Cow;
-
-/// Greatest angle between two arms' courses that make one stroke: cos 50°.
-const GOES_ON_COS: f64 = 0.642_787_6;
 
 /// Where the lines of a junction may go through one point.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -134,8 +132,7 @@ impl Heart<'_> {
         let mut ways = Vec::new();
         let meeting = meeting_point(arms, self.centre);
         let along = |one: &ArmOf| one.arm.along(meeting).min(0.0);
-        let tolerance_px =
-            |one: &ArmOf| (0.12 * one.arm.width_px).max(0.8) + 2.0 * one.arm.error_px(along(one));
+        let tolerance_px = |one: &ArmOf| slack_px(one.arm.width_px) + 2.0 * one.arm.error_px(along(one));
         let near = if meet == Meet::InInk {
             let off_px = meeting.distance(self.centre);
             off_px <= 2.0 * self.radius_px && self.scan.is_ink_around(meeting)
@@ -224,8 +221,7 @@ impl Heart<'_> {
         let half_px = 0.5 * arms.iter().map(|one| one.arm.width_px).fold(f64::INFINITY, f64::min);
         let off_px = place.distance(self.centre);
         off_px <= 0.5 * self.radius_px + 0.5
-            || off_px <= 6.0 * self.radius_px + 2.0
-                && self.scan.pen_was_at(place, half_px - (0.2 * half_px).max(0.6))
+            || off_px <= 6.0 * self.radius_px + 2.0 && self.scan.pen_was_at(place, surely_px(half_px))
     }
 }
 

@@ -31,6 +31,7 @@ mod pixel_line;
 mod place;
 mod raster_line;
 mod redraw;
+mod short;
 mod site;
 mod sites;
 mod smooth;

@@ -1,18 +1,9 @@
 //! [`Redrawn`]: the strokes of a small mark, moved until a pen that draws them leaves the ink that is there.
-//!
-//! As in a [trial](super::trial), a pixel is ink when its middle is within the pen's disc, and what contradicts that
-//! costs the square of how far it lies off.
 
-use super::trial::{Capsule, FARTHEST_PX, GOOD_PX2};
-use crate::{
-    PxVec,
-    picture::{Bitmap, Pixel},
-    stroke::PxPoint,
-};
-use core::ops::Range;
-
-/// How far vertices move at a time, px.
-pub(super) const STEPS_PX: [f64; 3] = [0.8, 0.4, 0.2];
+use crate::centreline::fit::prices::{GAIN_PX2, RASTER_PX2, STROKE_PX2, VERTEX_PX2};
+use crate::centreline::fit::search::{distinct, settle, shifted};
+use crate::centreline::fit::{Canvas, Capsule};
+use crate::{PxVec, stroke::PxPoint};
 
 /// Most times that all vertices are tried with one step.
 const MOST_ROUNDS: usize = 6;
@@ -20,21 +11,8 @@ const MOST_ROUNDS: usize = 6;
 /// Most vertices that are moved: more is no letter, and takes long.
 const MOST_VERTICES: usize = 48;
 
-/// Less is no gain, px².
-const LEAST_GAIN_PX2: f64 = 0.02;
-
-/// How far a pen may be thinner or wider than its line seems to be where it is thin, px.
-const THINNER_PX: f64 = 0.25;
-const WIDER_PX: f64 = 0.25;
-
-/// How far around its segments a vertex may move at a time, px.
-const SLACK_PX: f64 = 2.5;
-
-/// What the ink may be met worse for a vertex less, px².
-pub(super) const DROPPED_PX2: f64 = 0.3;
-
-/// What a stroke more must gain, px².
-const STROKE_PX2: f64 = 1.5;
+/// How far a pen's edge may lie from where its line seems to have it where it is thin, px.
+const EDGE_PX: f64 = 0.125;
 
 /// Most strokes that are added.
 const MOST_ADDED: usize = 3;
@@ -43,156 +21,112 @@ const MOST_ADDED: usize = 3;
 const BARE_PX: f64 = 0.25;
 
 /// The strokes of a mark, and its pen.
+#[derive(Clone)]
 pub(super) struct Redrawn<'a> {
-    ink: &'a Bitmap,
+    canvas: &'a Canvas,
     /// Polylines; of a closed one the first vertex is the last one, too.
     pub(super) strokes: Vec<Vec<PxPoint>>,
-    /// Half the pen's width, px.
+    /// Half the pen's width, and what it seems to be, px.
     pub(super) half_px: f64,
-    /// What it may be, px.
-    least_px: f64,
-    most_px: f64,
+    seen_px: f64,
     pub(super) cost: f64,
 }
 
 impl<'a> Redrawn<'a> {
     /// Strokes drawn by a pen about `width_px` wide, moved; none when they meet the ink as they are.
-    pub(super) fn of(ink: &'a Bitmap, strokes: Vec<Vec<PxPoint>>, width_px: f64) -> Option<Self> {
+    pub(super) fn of(canvas: &'a Canvas, strokes: Vec<Vec<PxPoint>>, width_px: f64) -> Option<Self> {
         let vertices: usize = strokes.iter().map(Vec::len).sum();
         if vertices > MOST_VERTICES {
             return None;
         }
         let half_px = 0.5 * width_px;
-        let (least_px, most_px) = (half_px - 0.5 * THINNER_PX, half_px + 0.5 * WIDER_PX);
-        let mut drawn = Self { ink, strokes, half_px, least_px, most_px, cost: 0.0 };
+        let mut drawn = Self { canvas, strokes, half_px, seen_px: half_px, cost: 0.0 };
         drawn.cost = drawn.whole_cost();
         drawn.fit_pen();
-        let before = drawn.cost;
-        if before > GOOD_PX2 {
-            for step_px in STEPS_PX {
-                drawn.descend(step_px);
-            }
+        let worth = drawn.worth();
+        if drawn.cost > RASTER_PX2 {
+            drawn.settle_all();
             drawn.bend_ends();
             drawn.add_strokes();
         }
         drawn.leave_out();
-        let fewer = drawn.strokes.iter().map(Vec::len).sum::<usize>() < vertices;
-        (drawn.cost < 0.5 * before || fewer && drawn.cost <= before.max(GOOD_PX2)).then_some(drawn)
+        (drawn.worth() < worth).then_some(drawn)
     }
 
-    /// For each pixel of a part the squared distance to the nearest of some segments.
-    fn squared(&self, part: &Part, wanted: impl Fn(&[PxPoint; 2]) -> bool) -> Vec<f32> {
-        let mut squared = vec![f32::INFINITY; part.len()];
-        let all = self.strokes.iter().flat_map(|stroke| segments(stroke));
-        all.filter(wanted).for_each(|ends| part.approach(ends, &mut squared));
-        squared
-    }
-
-    /// What a pen costs in a part that draws some segments, and what lies at squared distances from others.
-    fn cost_of(&self, part: &Part, others: &[f32], segments: &[[PxPoint; 2]], half_px: f64) -> f64 {
-        let mut squared = others.to_vec();
-        segments.iter().for_each(|ends| part.approach(*ends, &mut squared));
-        #[expect(clippy::cast_possible_truncation, reason = "a width in a picture of 40 px")]
-        let half = half_px as f32;
-        let mut cost = 0.0;
-        for (y, line) in part.rows.clone().zip(squared.chunks_exact(part.columns.len().max(1))) {
-            for (x, squared) in part.columns.clone().zip(line) {
-                if self.ink.get(Pixel::new(x, y)) != (*squared <= half * half) {
-                    let off = f64::from((libm::sqrtf(*squared) - half).abs().min(FARTHEST_PX));
-                    cost += off * off;
-                }
-            }
-        }
-        cost
+    /// Its pen along some of its segments.
+    fn pens(&self, half_px: f64, wanted: impl Fn(&[PxPoint; 2]) -> bool) -> Vec<Capsule> {
+        let segments = self.strokes.iter().flat_map(|stroke| segments(stroke)).filter(wanted);
+        segments.map(|[from, to]| Capsule::new(from, to, half_px)).collect()
     }
 
     /// What the strokes cost as they are.
-    pub(super) fn whole_cost(&self) -> f64 {
-        let all = Part::of(self.ink);
-        self.cost_of(&all, &self.squared(&all, |_| true), &[], self.half_px)
+    fn whole_cost(&self) -> f64 {
+        self.cost_of(self.half_px)
+    }
+
+    /// The same with another pen.
+    fn cost_of(&self, half_px: f64) -> f64 {
+        let pens = self.pens(half_px, |_| true);
+        self.canvas.residual(&self.canvas.layer(&[]), &pens, f64::INFINITY).unwrap_or(f64::INFINITY)
     }
 
     /// Another width of the pen where that is better.
     fn fit_pen(&mut self) {
-        let all = Part::of(self.ink);
-        let everything = self.squared(&all, |_| true);
-        for way in [-0.125, 0.125] {
-            while self.half_px + way >= self.least_px && self.half_px + way <= self.most_px {
-                let cost = self.cost_of(&all, &everything, &[], self.half_px + way);
-                if cost >= self.cost - LEAST_GAIN_PX2 {
-                    break;
-                }
-                (self.cost, self.half_px) = (cost, self.half_px + way);
+        for half_px in [self.seen_px - EDGE_PX, self.seen_px, self.seen_px + EDGE_PX] {
+            let cost = self.cost_of(half_px);
+            if cost < self.cost - GAIN_PX2 {
+                (self.cost, self.half_px) = (cost, half_px);
             }
         }
     }
 
-    /// Moves all vertices, those that share a place together, until no step of that length is better.
-    pub(super) fn descend(&mut self, step_px: f64) {
-        for _ in 0..MOST_ROUNDS {
-            let before = self.cost;
-            for vertex in self.vertices() {
-                self.move_vertex(vertex, step_px);
-            }
-            self.fit_pen();
-            if self.cost >= before {
-                break;
-            }
-        }
+    /// Moves all vertices, those that share a place together, and changes the pen, until nothing is better.
+    pub(super) fn settle_all(&mut self) {
+        settle(self, MOST_ROUNDS, Self::vertices, |drawn, at, step_px| {
+            let moved = drawn.shift(at, step_px);
+            drawn.fit_pen();
+            moved
+        });
     }
 
-    /// One of the vertices at each place: its stroke and its index.
-    fn vertices(&self) -> Vec<(usize, usize)> {
-        let mut seen: Vec<PxPoint> = Vec::new();
-        let mut found = Vec::new();
-        for (index, stroke) in self.strokes.iter().enumerate() {
-            for (vertex, at) in stroke.iter().enumerate() {
-                if !seen.contains(at) {
-                    seen.push(*at);
-                    found.push((index, vertex));
-                }
-            }
-        }
-        found
-    }
-
-    /// Moves a vertex, and those at the same place, as long as a step is better.
-    pub(super) fn move_vertex(&mut self, (stroke, vertex): (usize, usize), step_px: f64) {
-        let Some(mut at) = self.strokes.get(stroke).and_then(|stroke| stroke.get(vertex)).copied() else {
-            return;
+    /// Moves some vertices, given as their strokes and indices.
+    pub(super) fn settle_some(&mut self, vertices: &[(usize, usize)], rounds: usize) {
+        let places = |drawn: &Self| {
+            let at = |(stroke, vertex): &(usize, usize)| drawn.strokes.get(*stroke)?.get(*vertex).copied();
+            distinct(vertices.iter().filter_map(at))
         };
-        let start = at;
+        settle(self, rounds, places, Self::shift);
+    }
+
+    /// The places of all vertices.
+    fn vertices(&self) -> Vec<PxPoint> {
+        distinct(self.strokes.iter().flatten().copied())
+    }
+
+    /// Moves the vertices at a place as long as a step is better; whether it was.
+    fn shift(&mut self, start: PxPoint, step_px: f64) -> bool {
         let touches = |ends: &[PxPoint; 2]| ends.contains(&start);
+        let others = self.canvas.layer(&self.pens(self.half_px, |ends| !touches(ends)));
         let own: Vec<[PxPoint; 2]> =
-            self.strokes.iter().flat_map(|stroke| segments(stroke)).filter(|ends| touches(ends)).collect();
-        let part = Part::around(&own, self.half_px + SLACK_PX, self.ink);
-        let others = self.squared(&part, |ends| !touches(ends));
-        let mut here = self.cost_of(&part, &others, &own, self.half_px);
-        let outside = self.cost - here;
-        let mut direction = 0;
-        while let Some(way) = PxVec::AXES.get(direction).copied() {
-            let next = at + way * step_px;
-            let moved: Vec<[PxPoint; 2]> =
-                own.iter().map(|ends| ends.map(|end| if end == start { next } else { end })).collect();
-            let cost = self.cost_of(&part, &others, &moved, self.half_px);
-            if cost < here - LEAST_GAIN_PX2 && next.distance(start) < SLACK_PX {
-                (at, here, direction) = (next, cost, 0);
-            } else {
-                direction += 1;
-            }
-        }
-        self.cost = outside + here;
-        for place in self.strokes.iter_mut().flatten().filter(|place| **place == start) {
-            *place = at;
-        }
+            self.strokes.iter().flat_map(|stroke| segments(stroke)).filter(touches).collect();
+        let (at, cost) = shifted(start, step_px, self.cost, |to, cost| {
+            let moved = |end: PxPoint| if end == start { to } else { end };
+            let pens: Vec<Capsule> =
+                own.iter().map(|[a, b]| Capsule::new(moved(*a), moved(*b), self.half_px)).collect();
+            self.canvas.residual(&others, &pens, cost - GAIN_PX2)
+        });
+        self.cost = cost;
+        self.strokes.iter_mut().flatten().filter(|place| **place == start).for_each(|place| *place = at);
+        at != start
     }
 
     /// Adds strokes where ink is bare.
     fn add_strokes(&mut self) {
         /// Half the length that a stroke begins with, px.
         const HALF_PX: [f64; 2] = [0.5, 2.0];
+        const HALF: f64 = core::f64::consts::FRAC_1_SQRT_2;
         const ALONG: [PxVec; 4] =
-            [PxVec::new(1.0, 0.0), PxVec::new(0.0, 1.0), PxVec::new(0.7, 0.7), PxVec::new(0.7, -0.7)];
+            [PxVec::new(1.0, 0.0), PxVec::new(0.0, 1.0), PxVec::new(HALF, HALF), PxVec::new(HALF, -HALF)];
         for _ in 0..MOST_ADDED {
             if self.cost <= STROKE_PX2 {
                 return;
@@ -203,24 +137,25 @@ impl<'a> Redrawn<'a> {
                 let ends = [bare - along * half_px, bare + along * half_px];
                 let mut more = self.with_stroke(ends.to_vec());
                 let index = more.strokes.len() - 1;
-                for step_px in STEPS_PX {
-                    for vertex in [0, 1] {
-                        more.move_vertex((index, vertex), step_px);
-                    }
-                }
+                more.settle_some(&[(index, 0), (index, 1)], 1);
                 if best.as_ref().is_none_or(|best| more.cost < best.cost) {
                     best = Some(more);
                 }
             }
             let Some(mut best) = best.map(Self::joined) else { return };
-            for step_px in STEPS_PX {
-                best.descend(step_px);
-            }
-            if best.cost > 0.5 * self.cost || best.cost + STROKE_PX2 > self.cost {
+            best.settle_all();
+            if best.worth() >= self.worth() {
                 return;
             }
             *self = best;
         }
+    }
+
+    /// What they cost, with the prices of what is drawn.
+    pub(super) fn worth(&self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "some tens")]
+        let (vertices, strokes) = (self.vertices().len() as f64, self.strokes.len() as f64);
+        self.cost + VERTEX_PX2 * vertices + STROKE_PX2 * strokes
     }
 
     /// The same pen with other strokes.
@@ -238,19 +173,15 @@ impl<'a> Redrawn<'a> {
     /// The last stroke begins or ends where a vertex of another one is, if the ink allows it: pens are lifted elsewhere.
     fn joined(mut self) -> Self {
         let Some(last) = self.strokes.pop() else { return self };
-        let all = Part::of(self.ink);
-        let others = self.squared(&all, |_| true);
-        let mut best = (self.cost + DROPPED_PX2, last.clone());
-        for (stroke, vertex) in self.vertices() {
-            let Some(at) = self.strokes.get(stroke).and_then(|stroke| stroke.get(vertex)) else { continue };
+        let others = self.canvas.layer(&self.pens(self.half_px, |_| true));
+        let mut best = (self.cost + VERTEX_PX2, last.clone());
+        for at in self.vertices() {
             for end in 0..last.len() {
                 let mut moved = last.clone();
-                if let Some(place) = moved.get_mut(end) {
-                    *place = *at;
-                }
-                let ends: Vec<[PxPoint; 2]> = segments(&moved).collect();
-                let cost = self.cost_of(&all, &others, &ends, self.half_px);
-                if cost <= best.0 {
+                moved.iter_mut().skip(end).take(1).for_each(|place| *place = at);
+                let pens: Vec<Capsule> =
+                    segments(&moved).map(|[from, to]| Capsule::new(from, to, self.half_px)).collect();
+                if let Some(cost) = self.canvas.residual(&others, &pens, best.0) {
                     best = (cost, moved);
                 }
             }
@@ -260,16 +191,8 @@ impl<'a> Redrawn<'a> {
 
     /// The pixel of ink that the pen leaves farthest away.
     fn barest(&self) -> Option<PxPoint> {
-        let mut best: Option<(f32, PxPoint)> = None;
-        let all = Part::of(self.ink);
-        for (squared, pixel) in self.squared(&all, |_| true).into_iter().zip(all.pixels()) {
-            if self.ink.get(pixel) && best.is_none_or(|(most, _)| squared > most) {
-                best = Some((squared, pixel.into()));
-            }
-        }
-        let (squared, at) = best?;
-        let reach_px = self.half_px + BARE_PX;
-        (f64::from(squared) > reach_px * reach_px).then_some(at)
+        let barest = self.canvas.barest(&self.pens(self.half_px, |_| true));
+        barest.filter(|(_, off_px)| *off_px > BARE_PX).map(|(at, _)| at)
     }
 }
 
@@ -279,61 +202,10 @@ fn segments(stroke: &[PxPoint]) -> impl Iterator<Item = [PxPoint; 2]> + '_ {
     dot.into_iter().chain(stroke.iter().zip(stroke.iter().skip(1)).map(|(from, to)| [*from, *to]))
 }
 
-/// Some columns and rows of a picture.
-struct Part {
-    columns: Range<u32>,
-    rows: Range<u32>,
-}
-
-impl Part {
-    /// All of it.
-    fn of(picture: &Bitmap) -> Self {
-        Self { columns: 0..picture.width(), rows: 0..picture.height() }
-    }
-
-    /// What lies at most `reach_px` from the frame of some segments.
-    fn around(segments: &[[PxPoint; 2]], reach_px: f64, picture: &Bitmap) -> Self {
-        let range = |of: fn(&PxPoint) -> f64, side: u32| {
-            let all = segments.iter().flatten().map(of);
-            let low = all.clone().fold(f64::INFINITY, f64::min) - reach_px;
-            let high = all.fold(f64::NEG_INFINITY, f64::max) + reach_px;
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "a float cast saturates"
-            )]
-            let range = (low as u32).min(side)..(high as u32).saturating_add(1).min(side);
-            range
-        };
-        Self { columns: range(|at| at.x, picture.width()), rows: range(|at| at.y, picture.height()) }
-    }
-
-    fn len(&self) -> usize {
-        self.columns.len() * self.rows.len()
-    }
-
-    /// Its pixels, row by row.
-    fn pixels(&self) -> impl Iterator<Item = Pixel> + '_ {
-        self.rows.clone().flat_map(move |y| self.columns.clone().map(move |x| Pixel::new(x, y)))
-    }
-
-    /// Lessens the squared distance of each pixel to that from a segment.
-    #[expect(clippy::cast_precision_loss, reason = "at most 40 columns and rows")]
-    fn approach(&self, [from, to]: [PxPoint; 2], squared: &mut [f32]) {
-        let pen = Capsule::new(from, to, 0.0);
-        for (y, line) in self.rows.clone().zip(squared.chunks_exact_mut(self.columns.len().max(1))) {
-            let y = y as f32 + 0.5;
-            for (x, least) in self.columns.clone().zip(line) {
-                let here = pen.squared(x as f32 + 0.5, y);
-                *least = if here < *least { here } else { *least };
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::picture::{Bitmap, Pixel};
 
     pub(in super::super) fn polyline(places: &[(f64, f64)]) -> Vec<PxPoint> {
         places.iter().map(|(x, y)| PxPoint::new(*x, *y)).collect()
@@ -342,10 +214,15 @@ pub(super) mod tests {
     /// What a pen 3 px wide leaves on 20 x 20 px.
     fn ink(strokes: &[Vec<PxPoint>]) -> Bitmap {
         let mut ink = Bitmap::new(20, 20).unwrap();
-        let all = Part::of(&ink);
-        let mut squared = vec![f32::INFINITY; all.len()];
-        strokes.iter().flat_map(|stroke| segments(stroke)).for_each(|ends| all.approach(ends, &mut squared));
-        all.pixels().zip(squared).for_each(|(pixel, squared)| ink.set(pixel, squared <= 2.25));
+        let off_px = |at: PxPoint, [from, to]: [PxPoint; 2]| {
+            let way = to - from;
+            let part = (at - from).dot(way) / way.length_squared().max(f64::MIN_POSITIVE);
+            at.distance(from + way * part.clamp(0.0, 1.0))
+        };
+        for at in (0..20).flat_map(|y| (0..20).map(move |x| Pixel::new(x, y))) {
+            let mut all = strokes.iter().flat_map(|stroke| segments(stroke));
+            ink.set(at, all.any(|ends| off_px(at.into(), ends) <= 1.5));
+        }
         ink
     }
 
@@ -355,7 +232,7 @@ pub(super) mod tests {
     ) -> Option<Vec<Vec<PxPoint>>> {
         let ink = ink(drawn);
         let strokes = found.iter().map(|stroke| polyline(stroke)).collect();
-        Some(Redrawn::of(&ink, strokes, 3.0)?.strokes)
+        Some(Redrawn::of(&Canvas::of(&ink), strokes, 3.0)?.strokes)
     }
 
     /// Half a pixel of the raster's, and a step.

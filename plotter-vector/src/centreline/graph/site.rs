@@ -38,6 +38,18 @@ const THIN_DISC_PX: f64 = 0.25;
 /// half, a corner of it a little less.
 const LEAST_SHARE: f64 = 0.45;
 
+/// How much wider than elsewhere a line may seem to be where it is undisturbed, px: three quarters of a pixel for the raster
+/// at both of its edges, and of a wide one a share for what a pen's pressure does.
+pub(super) fn slack_px(width_px: f64) -> f64 {
+    (0.15 * width_px).max(0.75)
+}
+
+/// Radius of the disc that a pen leaves for sure where it was, px, of one that draws lines so wide, half of it: the raster
+/// and the paper take some of its edge.
+pub(super) fn surely_px(half_px: f64) -> f64 {
+    half_px - (0.2 * half_px).max(0.6)
+}
+
 /// What a site is in its line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Role {
@@ -391,7 +403,7 @@ impl Scan<'_> {
     }
 
     /// A pixel and the 127 to the right of it, a bit each from the lowest on, set where there is ink.
-    pub(super) fn ink_from(&self, at: Pixel) -> u128 {
+    pub(crate) fn ink_from(&self, at: Pixel) -> u128 {
         let row = at.y.checked_sub(self.first_row).map_or(&[][..], |row| self.ink.row(row));
         let (first, bit) = ((at.x / u64::BITS) as usize, at.x % u64::BITS);
         let word = |index: usize| row.get(first + index).copied().map_or(0, u128::from);

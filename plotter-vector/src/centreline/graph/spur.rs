@@ -2,7 +2,7 @@
 
 use super::arm::{TYPICAL_SITES, typical_width_px};
 use super::line_end::{AT_RIM_PX, MOST_CUT_RADII};
-use super::site::{Scan, Side};
+use super::site::{Scan, Side, slack_px};
 use super::sites::Sites;
 use super::{End, Graph};
 use crate::stroke::PxPoint;
@@ -148,7 +148,7 @@ impl<'a> Spurs<'a> {
             let middle = pixels.get(pixels.len() / 2).copied().unwrap_or_default();
             self.scan.radius_px(middle.into(), root_px + 1.0)
         };
-        let slack_px = (0.15 * root_px).max(0.75);
+        let slack_px = slack_px(root_px);
         let tapers =
             tip_px <= 0.3 * root_px + 0.5 && (middle_px() - f64::midpoint(root_px, tip_px)).abs() <= slack_px;
         let cut = if is_cut && tapers { self.scan.rim_run(tip) } else { None };

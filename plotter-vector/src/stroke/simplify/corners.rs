@@ -1,17 +1,13 @@
 //! Which vertices of a polyline are corners of the line that it stands for.
 
 use super::promise::Promise;
-use crate::stroke::{MAX_REACH_PX, PxPoint, PxVec};
+use crate::stroke::{MAX_REACH_PX, PxPoint, PxVec, turn::GOES_ON_COS};
 
 /// Length of the shorter arm times the turn, in tolerances, above which a vertex is a corner.
 ///
 /// The longest chords within e on either side of a circle of radius r are 4 √(r e) long and turn by 4 √(e /
 /// r): their product is 16 e, whatever the circle; more where the bend changes.
 const CORNER: f64 = 40.0;
-
-/// Turn at a site between what comes and what goes, each a parabola of its own, above which it is a corner:
-/// 50 degrees.
-const SHARP_COS: f64 = 0.643;
 
 /// Sites of each of the two parabolas, at most.
 const ARM_SITES: usize = 8;
@@ -99,7 +95,7 @@ fn is_corner(promise: Promise, sites: &[PxPoint], anchors: &[Anchor], index: usi
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
     let arm = (shorter as usize).clamp(LEAST_ARM_SITES, ARM_SITES);
-    // The nearest site need not be the one at the corner.
+    // What comes and what goes is a parabola each. The nearest site need not be the one at the corner.
     (0..5).any(|step| {
         let site = anchor.site + sites.len() + step - 2;
         let (Some(come), Some(go)) =
@@ -108,7 +104,7 @@ fn is_corner(promise: Promise, sites: &[PxPoint], anchors: &[Anchor], index: usi
             return false;
         };
         let lengths = libm::sqrt(come.length_squared() * go.length_squared());
-        lengths > 0.0 && -come.dot(go) < SHARP_COS * lengths
+        lengths > 0.0 && -come.dot(go) < GOES_ON_COS * lengths
     })
 }
 
