@@ -8,6 +8,10 @@ use plotter_hal::{
     quadrature,
 };
 use plotter_motion::encoder::{Phases, PulseCounter};
+use plotter_motion::firmware::Notice;
+use plotter_motion::firmware::stepper_plotter::{
+    Command, Drivers, Lateness, Report, SettingsError, Signal, Status,
+};
 use plotter_motion::homing::{Homed, HomingError, HomingStatus};
 use plotter_motion::planner::PlanError;
 use plotter_motion::protocol::digits::{Dropped, Reply};
@@ -63,4 +67,5 @@ fn what_goes_between_a_controller_and_its_drivers_can_be_printed() {
     formats::<(Phases, PulseCounter, Homed, HomingStatus, HomingError)>();
     formats::<(Dropped, Reply, DecodeError, LinkState, LinkCounts)>();
     formats::<(ConfigError, PlanError, gcode::Error, hpgl::Error)>();
+    formats::<(Command, Signal, Report, Status, Lateness, Drivers, SettingsError, Notice)>();
 }

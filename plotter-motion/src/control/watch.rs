@@ -5,6 +5,7 @@ use core::fmt;
 
 /// What is wrong with an axis, as far as its encoder and the drive on it tell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Trouble {
     /// It does not move under a drive that would move it whatever its friction. It is let go, and tried again
@@ -29,6 +30,7 @@ impl Trouble {
 
 /// An axis and what is wrong with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct AxisTrouble {
     /// Which axis.
     pub axis: Axis,

@@ -9,6 +9,7 @@ use core::time::Duration;
 
 /// Something that a person at the machine should know.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Notice {
     /// Part of a target was dropped; the next byte begins a new one.

@@ -4,6 +4,7 @@
 ///
 /// [`Detection`](super::Detection) finds it out from a text.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum PenConvention {
@@ -58,6 +59,7 @@ impl PenConvention {
 
 /// Where a servo's place stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum ServoCommand {
     /// `M300 S…`: the Unicorn plotter.
@@ -74,6 +76,7 @@ pub enum ServoCommand {
 
 /// How a laser is switched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum LaserCommand {
     /// `M3 S…` and `M4 S…`, `M5`, and `S` in any line: GRBL. By `M4` it is dark where the machine stands.

@@ -73,6 +73,7 @@ impl PenMove {
 /// whatever takes operations does so at its end ([`Planner::finish`](crate::Planner::finish), `finish` of the
 /// writers), so no drawing needs an operation for it. A travel to where the pen stands lifts it before.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 #[repr(u32)] // a tag of the width of a float costs small processors a second comparison everywhere

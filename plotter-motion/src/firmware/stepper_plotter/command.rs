@@ -10,6 +10,7 @@ use core::fmt;
 
 /// What the receive side asks of the motion side, one after the other: through the queue.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u32)] // a tag of the width of a float costs small processors a second comparison everywhere
 pub enum Command {
     /// Plans and does this. What follows closely is planned together with it.
@@ -53,6 +54,7 @@ pub enum Command {
 
 /// What the receive side asks at once, past the queue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Signal {
     /// Feed hold: brakes along the path and stands.
     Hold,
@@ -78,6 +80,7 @@ pub enum Signal {
 
 /// Why the machine has been stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Stop {
     /// The emergency stop button.
     Emergency,
@@ -111,6 +114,7 @@ impl fmt::Display for Stop {
 
 /// What the motion side tells the receive side.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Report {
     /// All before [`Command::Finish`] or [`Command::End`] is done.
     Done,

@@ -8,6 +8,7 @@ use core::time::Duration;
 /// A driver needs some time for each step, and a main loop that comes late finds more than one due. A step
 /// that the drivers would refuse is not given and not counted; it stays due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Drivers {
     /// Both can take a step. Simulated motors always can.
     Ready,
@@ -30,6 +31,7 @@ impl Drivers {
 /// than that. A motor may lose steps all the same when a loop stands still in the middle of a fast line,
 /// which stops it without a brake; the machine does not know.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Lateness {
     steps: u32,
     greatest_ns: u32,

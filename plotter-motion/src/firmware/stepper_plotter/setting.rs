@@ -28,6 +28,7 @@ const SIDES_MM: RangeInclusive<f64> = 1.0..=65_535.0;
 /// one for both | 1 to 1,000,000 |
 /// | 130, 131 | width and height of the area, whole mm | 1 to 65,535 |
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Setting {
     /// Grbl's number of it.
     pub number: u8,
@@ -37,6 +38,7 @@ pub struct Setting {
 
 /// Why a setting is not taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum SettingProblem {
     /// There is no such setting, or it cannot be changed.

@@ -16,6 +16,7 @@ pub(super) const FULL_POWER: u16 = 1000;
 
 /// Which language the host speaks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Dialect {
     /// That of Makeblock's mDraw: one line at a time, each answered by `OK` when it is done.
@@ -29,6 +30,7 @@ pub enum Dialect {
 ///
 /// The default is what mDraw's firmware begins with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct StoredSettings {
     /// Width of the area, mm.
@@ -306,6 +308,7 @@ impl<M: Modes> CheckedSettings<M> {
 
 /// Settings that no machine can be driven with.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum SettingsError {
     /// The steps to the millimetre.

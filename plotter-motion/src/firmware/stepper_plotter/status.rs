@@ -4,6 +4,7 @@ use crate::{LimitSwitches, Point};
 
 /// What the machine does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Activity {
     /// It stands, and nothing is to be done.
     #[default]
@@ -25,6 +26,7 @@ pub enum Activity {
 
 /// Percent of what is asked for: 100 of each while nobody says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Percents {
     /// Of speeds with the pen down.
     pub draw: u8,
@@ -42,6 +44,7 @@ impl Default for Percents {
 
 /// A view of the motion side. Two tasks share it under a lock.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Status {
     /// What it does.
     pub activity: Activity,

@@ -67,6 +67,7 @@ pub use stepping::Stepping;
 /// How often a machine had fewer steps than it needs to brake. With anything but zeros here, the main loop is
 /// away for too long, or the memory is too small for the speed of the machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Underruns {
     /// Steps that were made more slowly than planned.
     pub slowed_steps: u32,
