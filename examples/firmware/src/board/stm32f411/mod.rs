@@ -15,10 +15,11 @@
 //! Every output needs a resistor to ground (ENABLE of the motor drivers: to 3.3 V) that holds it at rest
 //! while the processor starts, or has stopped: its pins are inputs then.
 
+pub mod alarm;
 mod clock;
 pub mod gantry;
 mod line;
-mod pins;
+pub mod pins;
 pub mod plotter;
 mod start;
 
