@@ -45,7 +45,6 @@ pub mod plant;
 pub mod profile;
 pub mod protocol;
 pub mod safety;
-pub mod settings_bytes;
 pub mod stepgen;
 pub mod testbed;
 pub mod toolpath;

@@ -1,8 +1,8 @@
 //! What a machine keeps, as bytes: written and read again, damaged, of another version, or anything at all.
 
 use crc::{CRC_16_IBM_SDLC, Crc};
+use plotter_motion::firmware::stepper_plotter::StoredError;
 use plotter_motion::firmware::stepper_plotter::StoredSettings;
-use plotter_motion::settings_bytes::StoredError;
 use proptest::prelude::*;
 
 fn settings() -> impl Strategy<Value = StoredSettings> {

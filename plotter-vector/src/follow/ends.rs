@@ -5,8 +5,8 @@
 use super::corners::{crossing, rim_px, straight};
 use super::crowd::Crowd;
 use super::flat::Flat;
-use super::lines::{SPACING_PX, cosine};
-use crate::stroke::{PxPoint, PxVec, turn::CORNER_COS};
+use super::lines::{CORNER_COS, SPACING_PX, cosine};
+use crate::stroke::{PxPoint, PxVec};
 
 /// Places of a line before its end that tell where it goes on.
 const ARM: usize = 7;

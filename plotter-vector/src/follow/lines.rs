@@ -11,7 +11,7 @@ use crate::{
     areas::split_by_width,
     ink::{despeckle, pen_width_px},
     picture::{Bitmap, Gray, Pixel},
-    stroke::{Bounded, PxPoint, PxVec, turn::CORNER_COS},
+    stroke::{Bounded, PxPoint, PxVec},
     trace::Vectorizer,
 };
 
@@ -32,6 +32,10 @@ const MARGIN_SHARE: f64 = 0.15;
 /// The same for sharp turns, whose arms are one piece of ink for a while.
 const TURN_MARGIN_WIDTHS: f64 = 16.0;
 const TURN_MARGIN_SHARE: f64 = 0.27;
+
+/// A sharper turn is a corner, which stays: cosine of 25 degrees, and a little. Of places that a camera's blur has
+/// moved a turn of just that is a curve.
+pub(super) const CORNER_COS: f64 = 0.906;
 
 /// A piece of a line's middle.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! [`joined`] and [`begun_straight`]: a corner is inside of a line, not where lines end.
 
-use super::lines::cosine;
-use crate::stroke::{PxPoint, turn::CORNER_COS};
+use super::lines::{CORNER_COS, cosine};
+use crate::stroke::PxPoint;
 
 /// How far to both sides the direction at a place is looked at, places about 2 px from each other.
 const NEAR: usize = 3;

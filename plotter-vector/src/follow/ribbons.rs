@@ -13,8 +13,8 @@ use super::centred::{TURN_PLACES, turns};
 use super::crowd::Crowd;
 use super::flat::Flat;
 use super::ink_map::{BLUR_PX, InkMap};
-use super::lines::{SPACING_PX, cosine, count_f64};
-use crate::stroke::{PxPoint, PxVec, turn::CORNER_COS};
+use super::lines::{CORNER_COS, SPACING_PX, cosine, count_f64};
+use crate::stroke::{PxPoint, PxVec};
 use core::ops::Range;
 use std::f64::consts::{PI, SQRT_2};
 

@@ -210,10 +210,10 @@ fn in_two_halves(counter: &Counter) {
         let (mut plan, mut tick) = (Tally::default(), Tally::default());
         for drawing in ["hatch", "spiral", "zigzag", "strokes"] {
             let figures = match drawing {
-                "hatch" => ahead::draw(counter, planner, memory, || drawings::hatch().take(16)),
-                "spiral" => ahead::draw(counter, planner, memory, drawings::spiral),
-                "zigzag" => ahead::draw(counter, planner, memory, || drawings::zigzag().take(200)),
-                _ => ahead::draw(counter, planner, memory, || drawings::strokes().take(160)),
+                "hatch" => ahead::draw(counter, planner, memory, || drawings::hatch().take(10)),
+                "spiral" => ahead::draw(counter, planner, memory, || drawings::spiral().take(600)),
+                "zigzag" => ahead::draw(counter, planner, memory, || drawings::zigzag().take(120)),
+                _ => ahead::draw(counter, planner, memory, || drawings::strokes().take(96)),
             };
             let ahead::Figures { steps, late, slowed, is_same, busy, ms, .. } = figures;
             hprintln!(

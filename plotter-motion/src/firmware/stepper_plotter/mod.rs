@@ -198,6 +198,7 @@ mod setting;
 mod settings;
 mod startup_lines;
 mod status;
+mod stored_bytes;
 
 #[cfg(feature = "step-ahead")]
 pub use ahead::{Planning, Stepping, StepsAhead, Underruns};
@@ -215,3 +216,4 @@ pub use setting::{Setting, SettingProblem};
 pub use settings::{CheckedSettings, Dialect, SettingsError, StepperPlotterSettings, StoredSettings};
 pub use startup_lines::StartupLines;
 pub use status::{Activity, Percents, Status};
+pub use stored_bytes::StoredError;

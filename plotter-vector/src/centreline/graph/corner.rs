@@ -20,6 +20,9 @@ use crate::stroke::{PxPoint, PxVec, turn::CORNER_COS};
 use core::ops::Range;
 use std::collections::HashMap;
 
+/// What the raster takes of a pen's disc in a corner, px: with more, a curve of a line 3 px wide has corners.
+const SHARP_RASTER_PX: f64 = 0.45;
+
 /// Greatest root mean square distance of the sites of a straight part, px.
 const STRAIGHT_PX: f64 = 0.4;
 
@@ -286,7 +289,7 @@ impl Line<'_> {
             return None;
         }
         let half_px = 0.5 * width_px;
-        let pen_was_at = |at: &PxPoint| scan.pen_was_at(*at, surely_px(half_px));
+        let pen_was_at = |at: &PxPoint| scan.pen_was_at(*at, surely_px(half_px, SHARP_RASTER_PX));
         // Of a sharp corner the raster shows the tip a little too far out.
         let most_px = if cos < SHARP_COS { 0.5 } else { 0.0 };
         let inwards = direction(at, inside).unwrap_or_default();

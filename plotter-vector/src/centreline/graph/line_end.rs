@@ -15,6 +15,9 @@ use super::arm::{Arm, typical_width_px};
 use super::site::{Scan, Site, surely_px};
 use crate::{PxVec, picture::Pixel, stroke::PxPoint};
 
+/// What the raster takes of a pen's disc at a tip, which it cuts on both sides, px.
+const TIP_RASTER_PX: f64 = 0.75;
+
 /// Longest way into a corner of a line's end, in radii of the line: 1 / sin 22.5°, where the pen was cut off at 45 degrees.
 /// What tapers longer is a point.
 const MOST_RADII: f64 = 2.7;
@@ -54,7 +57,7 @@ pub(super) fn tail(
         return 0;
     }
     let radii = if is_cut { MOST_CUT_RADII } else { MOST_RADII };
-    let least_px = surely_px(half_px);
+    let least_px = surely_px(half_px, TIP_RASTER_PX);
     let is_near = |at: &Pixel| PxPoint::from(*at).distance(tip.into()) <= radii * half_px + 1.0;
     let corner = || pixels.take_while(is_near).position(|at| radius_px(at) >= least_px);
     let Some(corner) = (if is_round { Some(0) } else { corner() }) else { return 0 };

@@ -14,6 +14,9 @@ use crate::stroke::{PxPoint, turn::GOES_ON_COS};
 use crate::{PxVec, picture::Pixel};
 use std::borrow::Cow;
 
+/// What the raster takes of a pen's disc where lines meet, px.
+const RASTER_PX: f64 = 0.6;
+
 /// Where the lines of a junction may go through one point.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Meet {
@@ -221,7 +224,8 @@ impl Heart<'_> {
         let half_px = 0.5 * arms.iter().map(|one| one.arm.width_px).fold(f64::INFINITY, f64::min);
         let off_px = place.distance(self.centre);
         off_px <= 0.5 * self.radius_px + 0.5
-            || off_px <= 6.0 * self.radius_px + 2.0 && self.scan.pen_was_at(place, surely_px(half_px))
+            || off_px <= 6.0 * self.radius_px + 2.0
+                && self.scan.pen_was_at(place, surely_px(half_px, RASTER_PX))
     }
 }
 

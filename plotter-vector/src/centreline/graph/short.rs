@@ -5,6 +5,7 @@ use super::meeting::{Heart, Meet};
 use super::site::Site;
 use super::trial::Trial;
 use crate::centreline::fit::prices::STROKE_PX2;
+use crate::stroke::PxPoint;
 use std::borrow::Cow;
 
 impl Lines<'_> {
@@ -21,7 +22,10 @@ impl Lines<'_> {
         if arms.len() < 3 {
             return None;
         }
-        let is_short = |(_, one): &(usize, &ArmOf)| one.tip.is_some() && !is_sure(one);
+        // No farther out than the widest line is wide: two curves that end in one tip leave little ink there, and go on.
+        let widest_px = arms.iter().map(|one| one.arm.width_px).fold(0.0, f64::max);
+        let is_hair = |tip: PxPoint| tip.distance(heart.centre) <= widest_px;
+        let is_short = |(_, one): &(usize, &ArmOf)| one.tip.is_some_and(is_hair) && !is_sure(one);
         for (index, short) in arms.iter().enumerate().filter(is_short) {
             let (mut arms, mut sites) = (arms.to_vec(), sites.to_vec());
             arms.remove(index);

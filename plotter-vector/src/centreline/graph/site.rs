@@ -44,10 +44,10 @@ pub(super) fn slack_px(width_px: f64) -> f64 {
     (0.15 * width_px).max(0.75)
 }
 
-/// Radius of the disc that a pen leaves for sure where it was, px, of one that draws lines so wide, half of it: the raster
-/// and the paper take some of its edge.
-pub(super) fn surely_px(half_px: f64) -> f64 {
-    half_px - (0.2 * half_px).max(0.6)
+/// Radius of the disc that a pen leaves for sure where it was, px, of one that draws lines so wide, half of it: the
+/// raster takes so much of its edge, and the paper a fifth.
+pub(super) fn surely_px(half_px: f64, raster_px: f64) -> f64 {
+    half_px - (0.2 * half_px).max(raster_px)
 }
 
 /// What a site is in its line.

@@ -41,15 +41,17 @@
 //! }
 //! let mut steps = 0;
 //! for now_us in (0..1_000_000_u32).step_by(10) {
+//!     let now = Duration::from_micros(now_us.into());
 //!     if now_us % 30_000 == 0 { // a main loop that comes every 30 ms
-//!         while planning.plan(Duration::from_micros(now_us.into())) {}
+//!         while planning.plan(now) {}
+//!         while planning.transmit(now).is_some() {} // to the host
 //!     }
 //!     while let Some(pulse) = stepping.tick(now_us, Drivers::Ready) {
-//!         steps += pulse.x(); // `motors.step(pulse, now)` of `plotter-hal`
-//!         # steps %= 100;
+//!         steps += i32::from(pulse.x()); // `motors.step(pulse, now)` of `plotter-hal`
 //!     }
 //! }
-//! assert_eq!(planning.position(), StepPoint::new(876, 0)); // 10 mm of 87.58 steps
+//! assert_eq!(steps, 876); // 10 mm of 87.58 steps
+//! assert_eq!(planning.position(), StepPoint::new(876, 0));
 //! assert_eq!((planning.lateness().steps(), planning.underruns().slowed_steps), (0, 0));
 //! # Ok::<(), plotter_motion::firmware::stepper_plotter::SettingsError>(())
 //! ```

@@ -15,7 +15,7 @@
 //!
 //! [`StepperPlotter::stored`]: crate::firmware::StepperPlotter::stored
 
-use crate::firmware::stepper_plotter::StoredSettings;
+use super::StoredSettings;
 use core::fmt;
 use crc::{CRC_16_IBM_SDLC, Crc, Table};
 
@@ -84,7 +84,7 @@ impl StoredSettings {
     /// How many bytes they take.
     pub const BYTES: usize = 12;
 
-    /// As bytes, for the EEPROM or the flash: see [`settings_bytes`](crate::settings_bytes).
+    /// As bytes, for the EEPROM or the flash: see [`StoredError`] for what is refused.
     ///
     /// ```
     /// # use plotter_motion::firmware::stepper_plotter::StoredSettings;
