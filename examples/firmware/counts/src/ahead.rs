@@ -1,5 +1,5 @@
 //! The stepper plotter's controller in two halves on a processor of 100 MHz: what planning takes is how long it
-//! takes, and every fifth of a second the main loop is away for 20 ms.
+//! takes, and of every tenth of a second the main loop is away for 20 ms.
 
 use crate::counter::{Counter, Tally};
 use core::fmt::Write as _;
@@ -50,7 +50,7 @@ impl Row {
     fn add(&mut self, us: u64, step: StepPair) {
         let after = us - self.last_us;
         // Where it stood it may begin again whenever the main loop is there.
-        let after = if after > AWAY_US { 0 } else { after };
+        let after = if after > AWAY_US || self.count == 0 { 0 } else { after };
         for byte in after.to_le_bytes().into_iter().chain([step.x as u8, step.y as u8]) {
             self.sum = (self.sum ^ u64::from(byte)).wrapping_mul(0x100_0000_01B3);
         }

@@ -48,9 +48,9 @@ impl Energy {
         whole(0.5 * speed_mm_s * speed_mm_s * self.per_mm2_s2, MOST_ENERGY)
     }
 
-    /// How long a machine goes on as planned on the way on which it could brake, us: v/2a.
+    /// How long a machine takes to brake, us: v/a.
     pub(super) fn braking_us(&self, speed_mm_s: f32) -> u64 {
-        whole(5e5 * speed_mm_s / (BRAKES * self.accel_mm_s2), MOST_ENERGY).into()
+        whole(1e6 * speed_mm_s / (BRAKES * self.accel_mm_s2), MOST_ENERGY).into()
     }
 
     /// What is braked away on each of some steps along a way.

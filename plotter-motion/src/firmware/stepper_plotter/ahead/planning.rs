@@ -12,7 +12,7 @@ use super::{Stepping, Underruns};
 use crate::extremes::{greatest, least};
 use crate::planner::{AllModes, Modes, Phase};
 use crate::safety::Blocked;
-use crate::{Axis, Direction, StepPair, StepPoint};
+use crate::{Axis, Direction, PlannerSettings, StepPair, StepPoint};
 use core::sync::atomic::Ordering;
 use core::time::Duration;
 
@@ -186,7 +186,9 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
         if self.plotter.link.commands.is_empty() && self.plotter.motion.could_take_more() {
             // A host that sends little by little: what is not taken from the planner yet can be planned anew.
             let ahead_us = self.clock_us.saturating_sub(whole_us(now));
-            let enough_us = self.energy.braking_us(self.plotter.motion.speed_mm_s()).saturating_add(WAITS_US);
+            let PlannerSettings { speed_mm_s, travel_speed_mm_s, .. } = self.plotter.motion.limits();
+            let fastest = crate::geom::single(speed_mm_s.max(travel_speed_mm_s));
+            let enough_us = self.energy.braking_us(fastest).saturating_add(WAITS_US);
             if !self.has_work_done(now) {
                 if self.steps.is_half_full() || ahead_us > enough_us {
                     return false;

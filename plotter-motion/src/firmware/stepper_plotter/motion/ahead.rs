@@ -142,11 +142,6 @@ impl<M: Modes> Motion<M> {
         self.ahead.stretches
     }
 
-    /// How fast the machine is at the end of what is planned, mm/s.
-    pub(in super::super) fn speed_mm_s(&self) -> f32 {
-        self.phase.map_or(0.0, |(_, phase)| phase.speed_at::<M>(phase.duration_s))
-    }
-
     /// That phase, and when it began, us.
     pub(in super::super) fn phased(&self) -> (u64, Phase, Curve) {
         let (began, phase) = self.phase.unwrap_or((Duration::ZERO, Phase::default()));
