@@ -497,6 +497,7 @@ impl SCurveState {
     }
 
     /// Chooses the next phase or phases, at least one.
+    #[cfg_attr(target_os = "none", inline(never))] // most of what a planner is asked for are ramps
     fn choose<const N: usize>(&mut self, ring: &Ring<N>, rest_mm: f64, limits: Limits) -> Chosen {
         let mut ahead = Ahead::new(ring, rest_mm, limits);
         let state = self.state;

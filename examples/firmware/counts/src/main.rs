@@ -6,6 +6,7 @@
 #![no_std]
 #![no_main]
 
+#[cfg(feature = "ahead")]
 mod ahead;
 mod counter;
 mod drawings;
@@ -24,6 +25,7 @@ use plotter_motion::firmware::{Gantry, GantrySettings};
 use plotter_motion::kinematics::{Cartesian, MotorScale};
 use plotter_motion::plant::AxisPlant;
 use plotter_motion::protocol::digits;
+#[cfg(feature = "ahead")]
 use plotter_motion::firmware::stepper_plotter::StepsAhead;
 use plotter_motion::{Axis, Direction, LimitSwitches, Machine, MachineConfig, PathMode, Planner, PlannerSettings, PlotOp, SafetyGate, StepGen, StepPoint, planner::Action, stepgen::{MotorEvent, StepGenSettings, StepQueue}};
 use vcell::VolatileCell;
@@ -187,6 +189,7 @@ fn interrupt(queue: &mut StepQueue<64>, gate: &SafetyGate, registers: &Registers
     None
 }
 
+#[cfg(feature = "ahead")]
 /// Late steps of both halves, with the main loop away for 20 ms in every 100 ms, up to 40,000 steps a second of
 /// each motor.
 fn in_two_halves(counter: &Counter) {
@@ -281,6 +284,7 @@ fn main() -> ! {
         print("step reckoned", filled);
         print("step interrupt", made);
     }
+    #[cfg(feature = "ahead")]
     in_two_halves(&counter);
     for (name, dust) in [("joint from 16 crossings", 0), ("joint with three grains of dust", 3)] {
         let (tally, silent) = joint::joints(&counter, dust);
