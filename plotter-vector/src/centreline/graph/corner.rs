@@ -13,12 +13,16 @@ use super::junction::{Connection, Junctions};
 use super::site::{Role, Scan, Site, surely_px};
 use super::sites::Sites;
 use super::{End, Graph};
-use crate::centreline::fit::prices::{GAIN_PX2, VERTEX_PX2, WIDE_PX};
+use crate::centreline::fit::prices::{GAIN_PX2, VERTEX_PX2};
 use crate::centreline::fit::search::{settle, shifted};
 use crate::centreline::fit::{Canvas, Capsule};
 use crate::stroke::{PxPoint, PxVec, turn::CORNER_COS};
 use core::ops::Range;
 use std::collections::HashMap;
+
+/// Width from which a line may be what no round pen has drawn, a printed letter's stroke, px: thinner, what a camera's
+/// blur and noise leave of a corner costs as much as the corner.
+const LETTER_PX: f64 = 8.0;
 
 /// What the raster takes of a pen's disc in a corner, px: with more, a curve of a line 3 px wide has corners.
 const SHARP_RASTER_PX: f64 = 0.45;
@@ -309,7 +313,7 @@ impl Line<'_> {
         width_px: f64,
     ) -> Option<PxPoint> {
         let half_px = 0.5 * width_px;
-        if width_px < WIDE_PX {
+        if width_px < LETTER_PX {
             return None;
         }
         #[expect(clippy::cast_precision_loss, reason = "a width below 200 px")]
