@@ -14,11 +14,11 @@
 //! On the single wire the chip hears its own replies and the host its own words: [`Replies`] skips what is
 //! not a reply to the question.
 //!
-//! **Homing without switches.** In stealthChop the chip measures the load, and its pin DIAG goes high when the motor is
-//! held (`SG_RESULT` not above twice `SGTHRS`). A [`LimitSwitch`](crate::LimitSwitch) on DIAG with
-//! `pressed_at: PinState::High` is, while the axis is driven towards an end, the switch of that end. Below
-//! [`Settings::stall_from_hz`] DIAG says nothing, so home faster than that; and leave the end with the switch
-//! of the other one in view.
+//! **Homing without switches.** In stealthChop the chip measures the load, and its pin DIAG goes high when
+//! the motor is held (`SG_RESULT` not above twice `SGTHRS`). A [`LimitSwitch`](crate::LimitSwitch) on DIAG
+//! with `pressed_at: PinState::High` is, while the axis is driven towards an end, the switch of that end.
+//! Below [`Settings::stall_from_hz`] DIAG says nothing, so home faster than that; and leave the end with the
+//! switch of the other one in view.
 //!
 //! Source: Trinamic, *TMC2209 Datasheet*, Rev. 1.09: section 4.1 "Datagram Structure", 4.2 "CRC Calculation",
 //! 5 "Register Map" (5.1 `GCONF`, `IFCNT`; 5.2 `IHOLD_IRUN`; 5.3 `SGTHRS`; 5.5.1 `CHOPCONF`), 9 "Selecting

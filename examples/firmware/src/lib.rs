@@ -1,10 +1,11 @@
-//! What the firmwares share: the machine's numbers and the board.
+//! What the firmwares share: the machine's numbers, the board, the stepper plotter's drivers.
 #![no_std]
 
 use small_runtime as _;
 
 pub mod board;
 pub mod machine;
+pub mod stepper;
 
 #[panic_handler]
 fn panic(info: &core::panic::PanicInfo<'_>) -> ! {

@@ -21,8 +21,8 @@ const PARTS: f64 = 32.0;
 const SHORTEST_S: f64 = 0.000_2;
 /// How much longer a part may be while nothing lies in the way: tried in this order.
 const LONGER: [f64; 4] = [64.0, 16.0, 4.0, 1.0];
-/// How nearly the greatest viable jerk is found: to 6e-8 of the range, as fine as `f32`, or until what lies ahead
-/// is kept by no more than this, mm: a tenth of [`TIGHT_MM`].
+/// How nearly the greatest viable jerk is found: to 6e-8 of the range, as fine as `f32`, or until what lies
+/// ahead is kept by no more than this, mm: a tenth of [`TIGHT_MM`].
 const KEPT_SHARE: f64 = 6e-8;
 const KEPT_MARGIN: f64 = 1e-7;
 /// Distance by which rounding may make a braking end too late, mm: `f64` holds a block of a kilometre to a
@@ -147,10 +147,10 @@ impl State {
         self.speed + STANDSTILL_MM_S - coming
     }
 
-    /// Whether the hardest braking to a speed ends within a distance in any case: by a bound on its length that
-    /// takes no difference of numbers. It is at most twice as long as the braking, and so tells of most places
-    /// that they do not matter; `f32` is some twenty times as quick on a small processor, and what it loses is
-    /// far below the margin.
+    /// Whether the hardest braking to a speed ends within a distance in any case: by a bound on its length
+    /// that takes no difference of numbers. It is at most twice as long as the braking, and so tells of most
+    /// places that they do not matter; `f32` is some twenty times as quick on a small processor, and what it
+    /// loses is far below the margin.
     fn surely_brakes_within(self, to: f64, limits: Limits, distance_mm: f64) -> bool {
         /// What rounding may take from the bound, as a share: hundreds of times what it does take.
         const MARGIN: f32 = 1.001;
@@ -273,9 +273,9 @@ impl<const N: usize> Ahead<N> {
 /// The greatest number of a range whose margin is not below 0, by less than [`KEPT_MARGIN`] or
 /// [`KEPT_SHARE`] of the range; the least one if there is none. The margin falls.
 ///
-/// By false position as the Illinois algorithm has it (M. Dowell and P. Jarratt, "A modified regula falsi method
-/// for computing the root of an equation", BIT 11, 1971), with a halving wherever that gains little: a third of
-/// the steps that halvings take.
+/// By false position as the Illinois algorithm has it (M. Dowell and P. Jarratt, "A modified regula falsi
+/// method for computing the root of an equation", BIT 11, 1971), with a halving wherever that gains little: a
+/// third of the steps that halvings take.
 fn greatest_kept([mut low, mut high]: [f64; 2], margin: impl Fn(f64) -> f64) -> f64 {
     let least_width = KEPT_SHARE * (high - low);
     let at_high = margin(high);

@@ -1,5 +1,5 @@
-//! The stepper plotter's controller in two halves: a main loop that is away now and then, and an interrupt that
-//! comes in time. Beside it the same controller in one piece, whose main loop is always there.
+//! The stepper plotter's controller in two halves: a main loop that is away now and then, and an interrupt
+//! that comes in time. Beside it the same controller in one piece, whose main loop is always there.
 
 use crate::drawings;
 use crate::stepper_bench;
@@ -389,6 +389,54 @@ fn what_is_answered_at_a_standstill_is_answered_when_the_motors_stand() {
     let told: f64 = halves.answers.split("MPos:").nth(1).unwrap().split(',').next().unwrap().parse().unwrap();
     assert!((told * 87.58 - f64::from(at)).abs() < 10.0, "{} {at}", halves.answers);
     assert!(halves.answers.contains("<Run"), "{}", halves.answers);
+}
+
+/// A main loop that sleeps until it is due, through pauses too, longer and shorter than a second.
+#[test]
+fn a_main_loop_that_comes_when_it_is_due_is_enough() {
+    let settings = settings(PlannerSettings::default());
+    let text = "M3\nG1 X10 F3000\nG4 P2.5\nG1 Y20 F5400\nG4 P0.2\nG1 X0 Y0 F0.9\n";
+    let text = text.replace("X0 Y0 F0.9", "X9.9 F0.6");
+    let (alone, end) = in_one(settings, &text);
+    let mut halves = Halves::new::<1024>(settings, |_| false);
+    halves.turn();
+    halves.send(&text);
+    let mut turns = 0;
+    while let Some(due) = {
+        halves.turn();
+        halves.planning.due()
+    } {
+        turns += 1;
+        let due_us = u64::try_from(due.as_micros()).unwrap();
+        assert!(due_us > halves.now_us || turns < 10, "{due:?}");
+        halves.run_to(due_us.max(halves.now_us + 1));
+        assert!(turns < 40_000, "it does not come to rest: {:?}", halves.planning.status(halves.now()));
+    }
+    assert_eq!(halves.planning.position(), end);
+    assert!(halves.made.iter().map(|made| made.1).eq(alone.iter().map(|made| made.1)));
+    assert_eq!((halves.planning.underruns(), halves.planning.lateness().steps()), (Underruns::default(), 0));
+}
+
+#[test]
+fn a_press_that_is_over_before_the_main_loop_comes_latches_all_the_same() {
+    let mut halves = on_its_way();
+    halves.stepping.emergency_stop(true);
+    halves.run_for_ms(5);
+    halves.stepping.emergency_stop(false);
+    halves.run_for_ms(5);
+    // It is unlocked, and before the interrupt hears of that the button is pressed again, and let go.
+    halves.send("$X\nG1 X50 F3000\n");
+    while halves.planning.plan(halves.now()) {}
+    assert!(!halves.planning.status(halves.now()).emergency_stop);
+    let before = halves.made.len();
+    halves.stepping.emergency_stop(true);
+    halves.stepping.emergency_stop(false);
+    halves.run_for_ms(500);
+    assert_eq!(halves.made.len(), before);
+    assert!(halves.planning.status(halves.now()).emergency_stop, "{}", halves.answers);
+    halves.send("$X\nG0 X0\n");
+    halves.run_for_ms(3000);
+    assert_eq!(halves.planning.position(), StepPoint::default(), "{}", halves.answers);
 }
 
 /// A line that is being drawn at full speed.

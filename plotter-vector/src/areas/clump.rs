@@ -25,8 +25,8 @@ const FIRST_STEP: usize = 2;
 const FEWEST_STEPS: usize = 4;
 
 /// Most times, and pixels more, that a line's front is as wide in one place as in another: one pixel for each
-/// of its edges, and a quarter, for a step is not quite as far in all directions. A rest of an area gets wider
-/// or narrower by more.
+/// of its edges, and a quarter, for a step is not quite as far in all directions. A rest of an area gets
+/// wider or narrower by more.
 const STEADY_TIMES: f64 = 1.25;
 const STEADY_PX: f64 = 2.0;
 
@@ -42,8 +42,8 @@ const RASTER_PX: f64 = 0.75;
 /// the dot of a joint, as small as is looked at, two lines leave a ninth bare, and of larger ones more.
 const UNEXPLAINED: f64 = 0.08;
 
-/// Least cosine of the angle between two lines that are one: 15 degrees, for of a thin line the eight pixels by
-/// which it is told may lie a pixel aside at either end.
+/// Least cosine of the angle between two lines that are one: 15 degrees, for of a thin line the eight pixels
+/// by which it is told may lie a pixel aside at either end.
 const THROUGH_COS: f64 = 0.966;
 
 /// One pen makes lines whose widths differ by no more than so many times, and px: a pixel and a half for the

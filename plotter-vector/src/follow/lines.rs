@@ -33,8 +33,8 @@ const MARGIN_SHARE: f64 = 0.15;
 const TURN_MARGIN_WIDTHS: f64 = 16.0;
 const TURN_MARGIN_SHARE: f64 = 0.27;
 
-/// A sharper turn is a corner, which stays: cosine of 25 degrees, and a little. Of places that a camera's blur has
-/// moved a turn of just that is a curve.
+/// A sharper turn is a corner, which stays: cosine of 25 degrees, and a little. Of places that a camera's
+/// blur has moved a turn of just that is a curve.
 pub(super) const CORNER_COS: f64 = 0.906;
 
 /// A piece of a line's middle.

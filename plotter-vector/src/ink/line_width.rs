@@ -65,8 +65,8 @@ impl Runs {
         })
     }
 
-    /// The length that one in `of` of all runs does not exceed, px; that of a longer run than any that is told
-    /// is 65.
+    /// The length that one in `of` of all runs does not exceed, px; that of a longer run than any that is
+    /// told is 65.
     fn shortest(&self, of: u64) -> Option<u32> {
         let total: u64 = self.0.iter().sum();
         let mut below = 0;

@@ -123,8 +123,8 @@ pub struct Vectorizer {
     pub gap_px: Option<f64>,
     /// Ours: strokes shorter than this are left out, px; 0 for none.
     pub min_stroke_px: f64,
-    /// Ours: the order of the strokes. What it leaves apart becomes one where two ends are no farther from each
-    /// other than the thinnest lines are wide.
+    /// Ours: the order of the strokes. What it leaves apart becomes one where two ends are no farther from
+    /// each other than the thinnest lines are wide.
     pub order: Order,
     /// Ours: rows that are worked on at a time. A measure of memory alone: it changes no result.
     pub band_rows: u32,

@@ -1,5 +1,5 @@
-//! The stepper plotter's controller in two halves on a processor of 100 MHz: what planning takes is how long it
-//! takes, and of every tenth of a second the main loop is away for 20 ms.
+//! The stepper plotter's controller in two halves on a processor of 100 MHz: what planning takes is how long
+//! it takes, and of every tenth of a second the main loop is away for 20 ms.
 
 use crate::counter::{Counter, Tally};
 use core::fmt::Write as _;

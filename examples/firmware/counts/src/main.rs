@@ -190,8 +190,8 @@ fn interrupt(queue: &mut StepQueue<64>, gate: &SafetyGate, registers: &Registers
 }
 
 #[cfg(feature = "ahead")]
-/// Late steps of both halves, with the main loop away for 20 ms in every 100 ms, up to 40,000 steps a second of
-/// each motor.
+/// Late steps of both halves, with the main loop away for 20 ms in every 100 ms, up to 40,000 steps a second
+/// of each motor.
 fn in_two_halves(counter: &Counter) {
     let mut memory = StepsAhead::<{ ahead::WORDS }>::new();
     let memory = &mut memory;

@@ -10,53 +10,32 @@ use core::time::Duration;
 use cortex_m::singleton;
 use cortex_m_rt::entry;
 use critical_section::Mutex;
-use plotter_firmware::board::plotter::{Laser as LaserPin, SERVO_STEPS, Servo};
-use plotter_firmware::board::{self, Event, Notice, Wire, alarm, pins::PinB};
-use plotter_firmware::machine::{CHECKED_PLOTTER, LASER, PLOTTER, StepperPlotter};
-use plotter_hal::a4988::Timing;
+use plotter_firmware::board::plotter::{Laser as LaserPin, Servo};
+use plotter_firmware::board::{self, Event, Notice, alarm, pins::PinB};
+use plotter_firmware::machine::{CHECKED_PLOTTER, LASER, StepperPlotter};
+use plotter_firmware::stepper::{self, BUTTONS_KNOWN, ENDS, LOOK, PEN, STANDSTILL};
 use plotter_hal::{
-    A4988, CheckedPenServo, EstopChange, EstopInput, Laser, LimitSwitch, LimitSwitchGroup, NoPin, PenServo,
-    PenServoSettings, StepperAxes, SwitchSettings,
+    EstopChange, EstopInput, Laser, LimitSwitch, LimitSwitchGroup, PenServo, StepperAxes, SwitchSettings,
 };
+use plotter_motion::SafetyGate;
 use plotter_motion::firmware::stepper_plotter::{Host, Planning, Stepping, StepsAhead};
 use plotter_motion::planner::Modes;
 use plotter_motion::protocol::SUBSTITUTE;
-use plotter_motion::{Axis, Direction, SafetyGate};
 
-/// Words between the halves, eight kilobytes: the steps of 37 mm along an axis, four words on sixteen of them for
-/// what they have in common. This machine brakes within 5 mm from 45 mm/s, so the loop may be away for more than
-/// half a second.
+/// Words between the halves, eight kilobytes: the steps of 37 mm along an axis, four words on sixteen of them
+/// for what they have in common. This machine brakes within 5 mm from 45 mm/s, so the loop may be away for
+/// more than half a second.
 const WORDS: usize = 4096;
 /// Most bytes of the half in the main loop: with the words, the interrupt's half and 2 KiB of stack it stays
 /// below 16 KiB.
 const PLANNING_BYTES: usize = 5 * 1024;
-/// How often the switches are looked at, and the watchdog is fed.
-const LOOK: Duration = Duration::from_millis(1);
-/// How long a laser may stay lit after a step.
-const STANDSTILL: Duration = Duration::from_millis(20);
-/// By then the switches have shown what they are.
-const BUTTONS_KNOWN: Duration = Duration::from_millis(25);
-
-const PEN: CheckedPenServo =
-    match (PenServoSettings { settle: PLOTTER.pen_settle, ..PenServoSettings::DEFAULT }).checked(SERVO_STEPS)
-    {
-        Ok(checked) => checked,
-        Err(_) => panic!("no servo can be driven with them"),
-    };
-
-const ENDS: [(Axis, Direction); 4] = [
-    (Axis::X, Direction::Minus),
-    (Axis::X, Direction::Plus),
-    (Axis::Y, Direction::Minus),
-    (Axis::Y, Direction::Plus),
-];
 
 /// Whether the half in the main loop is no larger than that.
 const fn is_small<H: Host, M: Modes>(_: &Planning<'_, H, M>) {
     const { assert!(size_of::<Planning<'_, H, M>>() <= PLANNING_BYTES, "it takes too much memory") }
 }
 
-type Motor = A4988<PinB, PinB, Wire<PinB>, NoPin>;
+type Motor = stepper::Motor<PinB, PinB, PinB>;
 
 /// What the interrupt has.
 struct Steps {
@@ -125,16 +104,7 @@ fn at_time(now_us: u32) -> Option<u32> {
 #[entry]
 fn main() -> ! {
     let Some(parts) = board::plotter::take() else { board::halt() };
-    let inverted = [PLOTTER.stored.x_direction != 0, PLOTTER.stored.y_direction != 0];
-    let x = A4988::new(Axis::X, parts.x.step, parts.x.dir, Timing::A4988);
-    let y = A4988::new(Axis::Y, parts.y.step, parts.y.dir, Timing::A4988);
-    let [x_enable, y_enable] = [Some(parts.enable), None].map(Wire);
-    let (x, y) = (x.with_enable(x_enable), y.with_enable(y_enable));
-    let [x_inverted, y_inverted] = inverted;
-    let mut motors = StepperAxes::new(
-        if x_inverted { x.with_inverted_direction() } else { x },
-        if y_inverted { y.with_inverted_direction() } else { y },
-    );
+    let mut motors = stepper::motors([parts.x, parts.y], parts.enable);
     let laser = Laser::new(parts.laser, STANDSTILL);
     let Ok(servo) = PenServo::from_checked(parts.servo, PEN) else { board::halt() };
     let switch = SwitchSettings::default();

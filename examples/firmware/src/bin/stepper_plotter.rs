@@ -5,44 +5,15 @@
 #![no_std]
 #![no_main]
 
-use core::time::Duration;
 use cortex_m::singleton;
 use cortex_m_rt::entry;
-use plotter_firmware::board::plotter::SERVO_STEPS;
-use plotter_firmware::board::{self, Event, Notice, Wire};
-use plotter_firmware::machine::{CHECKED_PLOTTER, LASER, PLOTTER, StepperPlotter};
-use plotter_hal::a4988::Timing;
-use plotter_hal::{
-    A4988, CheckedPenServo, EstopChange, EstopInput, Laser, LimitSwitch, LimitSwitchGroup, PenServo,
-    PenServoSettings, StepperAxes, SwitchSettings,
-};
+use plotter_firmware::board::{self, Event, Notice};
+use plotter_firmware::machine::{CHECKED_PLOTTER, LASER, StepperPlotter};
+use plotter_firmware::stepper::{self, BUTTONS_KNOWN, ENDS, LOOK, PEN, STANDSTILL};
+use plotter_hal::{EstopChange, EstopInput, Laser, LimitSwitch, LimitSwitchGroup, PenServo, SwitchSettings};
+use plotter_motion::SafetyGate;
 use plotter_motion::firmware::stepper_plotter::SettingsError;
 use plotter_motion::protocol::SUBSTITUTE;
-use plotter_motion::{Axis, Direction, SafetyGate};
-
-/// How often the switches are looked at, and the watchdog is fed.
-const LOOK: Duration = Duration::from_millis(1);
-/// How long a laser may stay lit after a step: longer than from one step to the next, shorter than it takes
-/// to burn.
-const STANDSTILL: Duration = Duration::from_millis(20);
-/// By then the switches have shown what they are.
-const BUTTONS_KNOWN: Duration = Duration::from_millis(25);
-
-/// The servo of the pen, looked at by the compiler: one that cannot be right does not get this far.
-const PEN: CheckedPenServo =
-    match (PenServoSettings { settle: PLOTTER.pen_settle, ..PenServoSettings::DEFAULT }).checked(SERVO_STEPS)
-    {
-        Ok(checked) => checked,
-        Err(_) => panic!("no servo can be driven with them"),
-    };
-
-/// Where the limit switches are.
-const ENDS: [(Axis, Direction); 4] = [
-    (Axis::X, Direction::Minus),
-    (Axis::X, Direction::Plus),
-    (Axis::Y, Direction::Minus),
-    (Axis::Y, Direction::Plus),
-];
 
 type Controller = Result<StepperPlotter, SettingsError>;
 
@@ -56,16 +27,7 @@ fn controller(gate: SafetyGate) -> Option<&'static mut StepperPlotter> {
 #[entry]
 fn main() -> ! {
     let Some(parts) = board::plotter::take() else { board::halt() };
-    let inverted = [PLOTTER.stored.x_direction != 0, PLOTTER.stored.y_direction != 0];
-    let x = A4988::new(Axis::X, parts.x.step, parts.x.dir, Timing::A4988);
-    let y = A4988::new(Axis::Y, parts.y.step, parts.y.dir, Timing::A4988);
-    let [x_enable, y_enable] = [Some(parts.enable), None].map(Wire);
-    let (x, y) = (x.with_enable(x_enable), y.with_enable(y_enable));
-    let [x_inverted, y_inverted] = inverted;
-    let mut motors = StepperAxes::new(
-        if x_inverted { x.with_inverted_direction() } else { x },
-        if y_inverted { y.with_inverted_direction() } else { y },
-    );
+    let mut motors = stepper::motors([parts.x, parts.y], parts.enable);
     // Off from here on, also where there is none.
     let mut laser = Laser::new(parts.laser, STANDSTILL);
     let Ok(mut servo) = PenServo::from_checked(parts.servo, PEN) else { board::halt() };

@@ -1,4 +1,5 @@
-//! [`Capsule`]: what a pen covers that goes straight on; many of them are drawn, and asked for distances, at once.
+//! [`Capsule`]: what a pen covers that goes straight on; many of them are drawn, and asked for distances, at
+//! once.
 
 use crate::PxVec;
 use crate::stroke::PxPoint;
@@ -125,7 +126,8 @@ impl Bundle {
         capsules.chunks(LANES).map(bundle).collect()
     }
 
-    /// The squared distances of a place as of [`Capsule::squared`], px². A function of its own, so that the lanes become vectors.
+    /// The squared distances of a place as of [`Capsule::squared`], px². A function of its own, so that the
+    /// lanes become vectors.
     #[inline(never)]
     fn squared(&self, x: f32, y: f32, squared: &mut [f32; LANES]) {
         for (lane, squared) in squared.iter_mut().enumerate() {

@@ -9,7 +9,7 @@
 //!
 //! A tight bend is told from a corner by the ink: a pen that went to P has left ink around P, half its width far.
 
-use super::junction::{Connection, Junctions};
+use super::connection::{Connection, Junctions};
 use super::site::{Role, Scan, Site, surely_px};
 use super::sites::Sites;
 use super::{End, Graph};
@@ -20,8 +20,8 @@ use crate::stroke::{PxPoint, PxVec, turn::CORNER_COS};
 use core::ops::Range;
 use std::collections::HashMap;
 
-/// Width from which a line may be what no round pen has drawn, a printed letter's stroke, px: thinner, what a camera's
-/// blur and noise leave of a corner costs as much as the corner.
+/// Width from which a line may be what no round pen has drawn, a printed letter's stroke, px: thinner, what a
+/// camera's blur and noise leave of a corner costs as much as the corner.
 const LETTER_PX: f64 = 8.0;
 
 /// What the raster takes of a pen's disc in a corner, px: with more, a curve of a line 3 px wide has corners.
@@ -230,7 +230,8 @@ impl Line<'_> {
     fn corners(&self, own: &Range<usize>, scan: Scan<'_>) -> Vec<Corner> {
         /// Sites to either side whose chords give a first look at the turn.
         const LOOK: usize = 6;
-        /// Square of the cosine of a turn that is none, a little above that of [`CORNER_COS`]: seen without a root.
+        /// Square of the cosine of a turn that is none, a little above that of [`CORNER_COS`]: seen without a
+        /// root.
         const STRAIGHT_COS2: f64 = 0.83;
         let count = self.sites.len();
         if count <= 2 * LOOK {
@@ -303,8 +304,9 @@ impl Line<'_> {
         Some(Corner { index, gap, at, cos })
     }
 
-    /// Where the straight parts beside a site meet so that their pen leaves more of the ink than one that goes as the
-    /// sites do: what no round pen has drawn, such as the foot of a printed letter, has no corner that a pen went to.
+    /// Where the straight parts beside a site meet so that their pen leaves more of the ink than one that
+    /// goes as the sites do: what no round pen has drawn, such as the foot of a printed letter, has no corner
+    /// that a pen went to.
     fn fitted(
         &self,
         scan: Scan<'_>,

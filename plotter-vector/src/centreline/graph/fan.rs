@@ -11,8 +11,9 @@
 //! short that it is nowhere undisturbed then goes straight on to where it ends.
 
 use super::arm::{Arm, typical_width_px};
+use super::connection::{Junctions, Way};
 use super::corner::direction;
-use super::junction::{ArmOf, Junctions, Lines, MOST_ARMS, Way, is_sure};
+use super::junction::{ArmOf, Lines, MOST_ARMS, is_sure};
 use super::meeting::{Heart, Meet};
 use super::site::{Site, slack_px};
 use super::trial::Trial;

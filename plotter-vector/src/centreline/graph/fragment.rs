@@ -4,7 +4,7 @@
 //! below comes to the same decisions as its neighbours; it hands out what lies in its own rows, and what it cuts at
 //! their border fits the neighbour's piece.
 
-use super::junction::{Connection, Junctions, Tip};
+use super::connection::{Connection, Junctions, Tip};
 use super::site::{Role, Scan, Site};
 use super::sites::Sites;
 use super::{Edge, End, Graph, Place};

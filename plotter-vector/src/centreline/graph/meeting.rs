@@ -6,8 +6,9 @@
 
 use super::End;
 use super::arm::Arm;
+use super::connection::{Junctions, Way};
 use super::corner::direction;
-use super::junction::{ArmOf, Junctions, Way, bend};
+use super::junction::{ArmOf, bend};
 use super::site::{Scan, Site, slack_px, surely_px};
 use crate::ink::hairlines::Hairlines;
 use crate::stroke::{PxPoint, turn::GOES_ON_COS};

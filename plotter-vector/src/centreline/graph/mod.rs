@@ -16,6 +16,7 @@ mod arm;
 mod bend;
 mod build;
 mod centreline;
+mod connection;
 mod corner;
 mod dot;
 mod fan;

@@ -22,7 +22,8 @@ impl Lines<'_> {
         if arms.len() < 3 {
             return None;
         }
-        // No farther out than the widest line is wide: two curves that end in one tip leave little ink there, and go on.
+        // No farther out than the widest line is wide: two curves that end in one tip leave little ink there,
+        // and go on.
         let widest_px = arms.iter().map(|one| one.arm.width_px).fold(0.0, f64::max);
         let is_hair = |tip: PxPoint| tip.distance(heart.centre) <= widest_px;
         let is_short = |(_, one): &(usize, &ArmOf)| one.tip.is_some_and(is_hair) && !is_sure(one);

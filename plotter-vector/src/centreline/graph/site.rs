@@ -38,14 +38,14 @@ const THIN_DISC_PX: f64 = 0.25;
 /// half, a corner of it a little less.
 const LEAST_SHARE: f64 = 0.45;
 
-/// How much wider than elsewhere a line may seem to be where it is undisturbed, px: three quarters of a pixel for the raster
-/// at both of its edges, and of a wide one a share for what a pen's pressure does.
+/// How much wider than elsewhere a line may seem to be where it is undisturbed, px: three quarters of a pixel
+/// for the raster at both of its edges, and of a wide one a share for what a pen's pressure does.
 pub(super) fn slack_px(width_px: f64) -> f64 {
     (0.15 * width_px).max(0.75)
 }
 
-/// Radius of the disc that a pen leaves for sure where it was, px, of one that draws lines so wide, half of it: the
-/// raster takes so much of its edge, and the paper a fifth.
+/// Radius of the disc that a pen leaves for sure where it was, px, of one that draws lines so wide, half of
+/// it: the raster takes so much of its edge, and the paper a fifth.
 pub(super) fn surely_px(half_px: f64, raster_px: f64) -> f64 {
     half_px - (0.2 * half_px).max(raster_px)
 }

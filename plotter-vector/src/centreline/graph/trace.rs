@@ -1,7 +1,7 @@
 //! [`trace`]: the fragments of a graph's lines, whatever becomes of its marks.
 
+use super::connection::Junctions;
 use super::corner::Corners;
-use super::junction::Junctions;
 use super::near::Near;
 use super::site::Scan;
 use super::sites::Sites;

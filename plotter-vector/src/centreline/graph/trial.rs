@@ -4,7 +4,8 @@
 //! leave the ink that is there.
 
 use super::arm::are_of_two_pens;
-use super::junction::{ArmOf, Way};
+use super::connection::Way;
+use super::junction::ArmOf;
 use super::site::{Scan, Site};
 use crate::centreline::fit::prices::{self, RASTER_PX2, WIDE_PX};
 use crate::centreline::fit::search::{distinct, settle, shifted};
@@ -99,7 +100,8 @@ impl<'a> Trial<'a> {
         self.roots.get(index).copied().flatten()
     }
 
-    /// The ways with their few places moved to where they cost least, from `cost` down, and what they cost there.
+    /// The ways with their few places moved to where they cost least, from `cost` down, and what they cost
+    /// there.
     pub(super) fn settle(&self, ways: Vec<Way>, cost: f64) -> (Vec<Way>, f64) {
         /// Ways with more places are curves.
         const MOST_PLACES: usize = 2;

@@ -1,10 +1,10 @@
 //! How fast a machine may be that knows only so many of its steps.
 //!
-//! A machine with the speed v has v²/2 of energy (for each kilogram), and a way s on which it may brake with a
-//! takes a·s of it. So it can stand where the known steps end if v²/2 is no more than the sum of a·s over all of
-//! them; when it is more, the times between the steps are stretched so that it is as much. The machine then
-//! brakes with exactly a, and where it curves it turns less hard than planned. Where more steps become known it
-//! speeds up again with a. Both sides count energies in units of [`Energy`].
+//! A machine with the speed v has v²/2 of energy (for each kilogram), and a way s on which it may brake with
+//! a takes a·s of it. So it can stand where the known steps end if v²/2 is no more than the sum of a·s over
+//! all of them; when it is more, the times between the steps are stretched so that it is as much. The machine
+//! then brakes with exactly a, and where it curves it turns less hard than planned. Where more steps become
+//! known it speeds up again with a. Both sides count energies in units of [`Energy`].
 
 use crate::planner::Shape;
 use crate::{PlannerSettings, planner::AccelLimit};

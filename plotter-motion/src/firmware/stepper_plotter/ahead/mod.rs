@@ -8,25 +8,26 @@
 //! ```
 //!
 //! [`StepperPlotter::poll`](super::StepperPlotter::poll) plans and steps in one call, so a main loop that is
-//! away for a while makes its steps late. Taken apart by [`StepperPlotter::split`](super::StepperPlotter::split),
-//! the same controller is asked for its steps ahead of their time, and they wait in [`StepsAhead`], where a
-//! main loop that is away does no harm. All else is the same: what is answered, and when, what the host is told
-//! of the place, which is that of the steps really made, and every step at its tick.
+//! away for a while makes its steps late. Taken apart by
+//! [`StepperPlotter::split`](super::StepperPlotter::split), the same controller is asked for its steps ahead
+//! of their time, and they wait in [`StepsAhead`], where a main loop that is away does no harm. All else is
+//! the same: what is answered, and when, what the host is told of the place, which is that of the steps
+//! really made, and every step at its tick.
 //!
 //! # When the steps run out
 //!
-//! A main loop that is away for longer than there are steps does not stop the motors dead. The machine is never
-//! faster than it can brake on the steps that are there: before they are too few, the times between them are
-//! stretched, it comes to rest on the path, and speeds up again when there are more, with no more than its
-//! acceleration on lines, and where it curves with what turning leaves of that. [`Planning::underruns`] tells of
-//! it. A limit of the jerk does not hold then. A memory that is too small for the greatest speed does the same:
-//! the machine is slower, and says so.
+//! A main loop that is away for longer than there are steps does not stop the motors dead. The machine is
+//! never faster than it can brake on the steps that are there: before they are too few, the times between
+//! them are stretched, it comes to rest on the path, and speeds up again when there are more, with no more
+//! than its acceleration on lines, and where it curves with what turning leaves of that.
+//! [`Planning::underruns`] tells of it. A limit of the jerk does not hold then. A memory that is too small
+//! for the greatest speed does the same: the machine is slower, and says so.
 //!
 //! # Stops
 //!
 //! The emergency stop, a limit switch and a reset by the host end the steps in the interrupt, whatever waits:
-//! [`Stepping`] has the machine's [`SafetyGate`](crate::SafetyGate). A feed hold and the end of a jog brake along
-//! the path behind the steps that wait, as Grbl's do behind its segments.
+//! [`Stepping`] has the machine's [`SafetyGate`](crate::SafetyGate). A feed hold and the end of a jog brake
+//! along the path behind the steps that wait, as Grbl's do behind its segments.
 //!
 //! ```
 //! # use core::time::Duration;

@@ -6,7 +6,7 @@ use super::super::{
     Stop, StoredSettings,
 };
 use super::energy::{Curve, Energy};
-use super::shared::{Found, In, Orders, StepsAhead};
+use super::shared::{Found, In, Orders, StepsAhead, either};
 use super::words::{MOST_AFTER_US, MOST_WAIT_US, MOST_WORDS, Stretch, Word};
 use super::{Stepping, Underruns};
 use crate::extremes::{greatest, least};
@@ -18,20 +18,24 @@ use core::time::Duration;
 
 /// Steps of a stretch, at most: four words of its own on sixteen of steps.
 const STEPS: usize = 16;
-/// Room that [`Planning::plan`] needs to go on: a stretch of so many steps with a wait before each, the servo,
-/// the laser.
+/// Room that [`Planning::plan`] needs to go on: a stretch of so many steps with a wait before each, the
+/// servo, the laser.
 const ROOM: u32 = MOST_WORDS * (16 + 3);
 /// A stretch ends after this, us: what is braked away on it counts from step to step alike, though the speed
 /// changes; at 1000 mm/s² by 2 mm/s in that time.
 const STRETCH_US: u64 = 2_000;
 /// Events farther ahead than this are waited for, us: a second. So no pause fills the memory.
 const FAR_US: u64 = 1_000_000;
-/// With this more than it takes to brake a host is waited for that has sent too little to look ahead, us: some
-/// lines of a slow line, and a main loop that is away.
+/// With this more than it takes to brake a host is waited for that has sent too little to look ahead, us:
+/// some lines of a slow line, and a main loop that is away.
 const WAITS_US: u64 = 50_000;
-/// Most things that one call of [`Planning::plan`] puts in: its longest time is that of two stretches, and what
-/// the planner needs for a block.
+/// Most things that one call of [`Planning::plan`] puts in: its longest time is that of two stretches, and
+/// what the planner needs for a block.
 const MOST_PUT: usize = 32;
+
+/// How often there may be more room, a stop that has been heard of or a standstill: a tenth of what is
+/// planned more than it takes to brake.
+const EVERY: Duration = Duration::from_millis(5);
 
 /// Why all that waits is left out.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,6 +86,10 @@ pub struct Planning<'a, H: Host = Receive, M: Modes = AllModes> {
     power: u16,
     was_dark: bool,
     was_latched: bool,
+    /// Presses of the button that the other half has told of.
+    presses: u8,
+    /// When [`plan`](Self::plan) was called last.
+    planned_at: Duration,
 }
 
 impl<H: Host, M: Modes> StepperPlotter<H, M> {
@@ -115,6 +123,8 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
             power: 0,
             was_dark: false,
             was_latched: is_latched,
+            presses: 0,
+            planned_at: Duration::ZERO,
         };
         planning.order();
         (planning, stepping)
@@ -139,10 +149,11 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
     }
 
     /// Plans as much as there is room for, a few steps at a time; says whether it is to be called again at
-    /// once, since there is more. Then, and whenever it has been called, let the other half look whether there
-    /// is something for it, if that is armed for no time: [`Stepping::tick`].
+    /// once, since there is more. Then, and whenever it has been called, let the other half look whether
+    /// there is something for it, if that is armed for no time: [`Stepping::tick`].
     pub fn plan(&mut self, now: Duration) -> bool {
         self.look(now);
+        self.planned_at = now;
         self.is_behind = false;
         let more = (0..MOST_PUT).all(|_| self.plan_one(now)) || self.is_behind;
         if !more || self.is_behind {
@@ -349,9 +360,16 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
         if self.waits_for != Some(Flush::Homed) {
             motion.note_made(Made { at, gap, stands });
         }
-        let limits = super::shared::either(self.orders.limits, found.limits);
+        let limits = either(self.orders.limits, found.limits);
+        let is_pressed_anew = core::mem::replace(&mut self.presses, found.presses) != found.presses;
+        if is_pressed_anew {
+            // It latches even if it has been released by now.
+            motion.note_switches(limits, true);
+        }
         motion.note_switches(limits, self.orders.button | found.button);
-        if let Some(blocked) = found.blocked
+        if is_pressed_anew {
+            self.stop(Stop::Emergency);
+        } else if let Some(blocked) = found.blocked
             && self.waits_for.is_none()
         {
             let why = match blocked {
@@ -417,11 +435,15 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
         self.order();
     }
 
-    /// When [`plan`](Self::plan) is to be called next if nothing comes before and it has not asked to be called
-    /// at once; none while nothing is to be done. While there are steps to be made it may be called at any time.
+    /// When [`plan`](Self::plan) is to be called next if nothing comes before and it has not asked to be
+    /// called at once; none while nothing is to be done. While steps are made it is every 5 ms, and sooner or
+    /// later does no harm.
     #[must_use]
     pub fn due(&self) -> Option<Duration> {
-        self.plotter.due()
+        let motion = &self.plotter.motion;
+        let stands = motion.waits_for_time() && self.steps.is_drained() && self.waits_for.is_none();
+        let again = self.planned_at.saturating_add(EVERY);
+        if stands { motion.due() } else { Some(again) }
     }
 
     /// The next byte for the host, if there is one.
@@ -443,8 +465,8 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
         self.end_call(now);
     }
 
-    /// Takes the state of the emergency stop button: pressed, no step is made from here on, and it latches. Or
-    /// [`Stepping::emergency_stop`] does.
+    /// Takes the state of the emergency stop button: pressed, no step is made from here on, and it latches.
+    /// Or [`Stepping::emergency_stop`] does.
     pub fn emergency_stop(&mut self, now: Duration, pressed: bool) {
         let was_latched = self.plotter.motion.gate().is_latched();
         self.orders.button = pressed;
@@ -455,7 +477,8 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
         self.end_call(now);
     }
 
-    /// Lets the machine go on after an emergency stop, unless the button is still pressed; says whether it did.
+    /// Lets the machine go on after an emergency stop, unless the button is still pressed; says whether it
+    /// did.
     pub fn reset_emergency_stop(&mut self, now: Duration) -> bool {
         self.look(now);
         let free = self.plotter.motion.reset_emergency_stop();
@@ -501,7 +524,8 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
         Lateness::told(shared.late_steps.load(Ordering::Acquire), shared.latest_us.load(Ordering::Acquire))
     }
 
-    /// How often there were too few steps: whether the main loop comes in time, and the memory is large enough.
+    /// How often there were too few steps: whether the main loop comes in time, and the memory is large
+    /// enough.
     #[must_use]
     pub fn underruns(&self) -> Underruns {
         let shared = self.steps.shared;

@@ -7,11 +7,11 @@ use crate::{LimitSwitches, StepPoint, safety::Blocked};
 use core::sync::atomic::{AtomicI32, AtomicU16, AtomicU32, Ordering};
 
 /// The memory of a [`Planning`](super::Planning) and a [`Stepping`](super::Stepping): the steps between them,
-/// `N` words of 16 bits, and what each lets the other know. `N` is a power of two, at least 64.
+/// `N` words of 16 bits, and what each lets the other know. `N` is a power of two from 64 to 32,768.
 ///
-/// A step takes one word, a stretch of up to sixteen of them four more. How many are needed: the steps of both
-/// motors on the way that the machine needs to brake from its greatest speed, and those of the longest time
-/// that the main loop is away. With less the machine keeps to a speed from which it can brake.
+/// A step takes one word, a stretch of up to sixteen of them four more. How many are needed: the steps of
+/// both motors on the way that the machine needs to brake from its greatest speed, and those of the longest
+/// time that the main loop is away. With less the machine keeps to a speed from which it can brake.
 ///
 /// Each word and each number is written by one half alone, and read by the other when it has been told: loads
 /// and stores, which all processors with 32 bits have, and no locks.
@@ -24,8 +24,8 @@ pub struct StepsAhead<const N: usize> {
 /// What each half lets the other know.
 #[derive(Debug)]
 pub(super) struct Shared {
-    /// Words put in, and the sums of all energies that can be braked away on them, to the end and to where the
-    /// machine stands last: by planning.
+    /// Words put in, and the sums of all energies that can be braked away on them, to the end and to where
+    /// the machine stands last: by planning.
     pub(super) head: AtomicU32,
     pub(super) end: AtomicU32,
     pub(super) rest: AtomicU32,
@@ -47,8 +47,10 @@ pub(super) struct Shared {
 }
 
 impl<const N: usize> StepsAhead<N> {
-    /// So that a place in the ring is found by leaving out bits, and a stretch has room.
-    const POWER_OF_TWO: () = assert!(N.is_power_of_two() && N >= 64, "a power of two of words, at least 64");
+    /// So that a place in the ring is found by leaving out bits, a stretch has room, and the energies of all
+    /// steps are less than [`PASSED`].
+    const POWER_OF_TWO: () =
+        assert!(N.is_power_of_two() && N >= 64 && N <= 32_768, "a power of two of words from 64 to 32,768");
 
     /// Empty memory.
     #[must_use]
@@ -94,6 +96,11 @@ impl<const N: usize> Default for StepsAhead<N> {
         Self::new()
     }
 }
+
+/// How far behind a standstill is told to be at most, as an energy: farther than all of a queue, and less
+/// than half of what the numbers count, so that it is not taken for one ahead. The machine may draw for hours
+/// without one.
+const PASSED: u32 = 1 << 30;
 
 /// A place in the ring.
 #[inline(always)]
@@ -148,6 +155,9 @@ impl In<'_> {
     /// On what has been put in since it was told last, so much energy can be braked away.
     pub(super) fn tell(&mut self, energy: u32) {
         self.end = self.end.wrapping_add(energy);
+        if self.end.wrapping_sub(self.shared.rest.load(Ordering::Relaxed)) > PASSED {
+            self.shared.rest.store(self.end.wrapping_sub(PASSED), Ordering::Release);
+        }
         self.shared.end.store(self.end, Ordering::Relaxed);
         self.shared.head.store(self.head, Ordering::Release);
     }
@@ -267,6 +277,9 @@ pub(super) struct Found {
     pub(super) blocked: Option<Blocked>,
     /// [`Orders::flushes`] as they have been carried out.
     pub(super) flushes: u8,
+    /// How often it has been told that the button is pressed: a press that is over when planning looks is
+    /// one.
+    pub(super) presses: u8,
 }
 
 impl Found {
@@ -279,11 +292,11 @@ impl Found {
             }
             Some(_) => 1,
         };
-        u32::from_le_bytes([flags, blocked, self.flushes, 0])
+        u32::from_le_bytes([flags, blocked, self.flushes, self.presses])
     }
 
     pub(super) fn of_bits(bits: u32) -> Self {
-        let [flags, blocked, flushes, _] = bits.to_le_bytes();
+        let [flags, blocked, flushes, presses] = bits.to_le_bytes();
         let blocked = match blocked & 3 {
             0 => None,
             1 => Some(Blocked::Stopped),
@@ -292,7 +305,7 @@ impl Found {
                 end: if blocked & 8 == 0 { Direction::Minus } else { Direction::Plus },
             }),
         };
-        Self { limits: limits_of(flags), button: flags & 0x10 != 0, blocked, flushes }
+        Self { limits: limits_of(flags), button: flags & 0x10 != 0, blocked, flushes, presses }
     }
 }
 
@@ -317,7 +330,7 @@ mod tests {
         for axis in [Axis::X, Axis::Y] {
             for end in [Direction::Minus, Direction::Plus] {
                 for blocked in [None, Some(Blocked::Stopped), Some(Blocked::Limit { axis, end })] {
-                    let found = Found { limits, button: false, blocked, flushes: 200 };
+                    let found = Found { limits, button: false, blocked, flushes: 200, presses: 3 };
                     assert_eq!(Found::of_bits(found.bits()), found);
                 }
             }

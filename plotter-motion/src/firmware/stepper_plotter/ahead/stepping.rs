@@ -6,7 +6,7 @@ use super::energy::LEAST_ENERGY;
 use super::shared::{Found, Orders, Out, either};
 use super::words::{MOST_WAIT_US, Word};
 use crate::kinematics::Backlash;
-use crate::safety::{Beam, Pulse};
+use crate::safety::{Beam, Blocked, Pulse};
 use crate::{Axis, Direction, SafetyGate, StepPair, StepPoint};
 use core::sync::atomic::Ordering;
 
@@ -28,9 +28,9 @@ enum Thing {
 /// Makes what [`Planning`](super::Planning) has planned, each step at its time. It has the machine's
 /// [`SafetyGate`], and is all that a timer's interrupt needs.
 ///
-/// Times are microseconds of a clock of 32 bits, which goes round after 71 minutes. When the timer comes, call
-/// [`tick`](Self::tick) until it gives no step, and arm the timer for [`due`](Self::due); when there is none,
-/// [`Planning::plan`](super::Planning::plan) says when to call it again. After each call the servo gets
+/// Times are microseconds of a clock of 32 bits, which goes round after 71 minutes. When the timer comes,
+/// call [`tick`](Self::tick) until it gives no step, and arm the timer for [`due`](Self::due); when there is
+/// none, [`Planning::plan`](super::Planning::plan) says when to call it again. After each call the servo gets
 /// [`pen_deg`](Self::pen_deg) and the laser [`beam`](Self::beam).
 #[derive(Debug)]
 pub struct Stepping<'a> {
@@ -101,15 +101,15 @@ impl<'a> Stepping<'a> {
         }
     }
 
-    /// The next step that is due by `now_us`, if there is one and the motors' drivers can take it. It counts as
-    /// made from here on, and [`due`](Self::due) tells when the next one is.
+    /// The next step that is due by `now_us`, if there is one and the motors' drivers can take it. It counts
+    /// as made from here on, and [`due`](Self::due) tells when the next one is.
     pub fn tick(&mut self, now_us: u32, drivers: Drivers) -> Option<Pulse<'_>> {
         self.next_step(now_us, drivers).then_some(())?;
         let Thing::Step(step) = core::mem::replace(&mut self.thing, Thing::None) else { return None };
         match self.gate.pass_step(step).map(Pulse::kept) {
             Ok(pulse) => {
                 self.given(now_us);
-                self.made(pulse);
+                self.count(pulse.into());
                 self.out.done();
                 // When the next one is due is known at once, so an interrupt is one call.
                 self.fetch(now_us);
@@ -124,11 +124,11 @@ impl<'a> Stepping<'a> {
     }
 
     /// The next thing with how long after the one before it is due, us, without a look at any clock: for PIO,
-    /// RMT, a timer with DMA, whatever makes steps from a buffer of delays. With no pulse it is a pause, or the
-    /// servo or the laser: from then on [`pen_deg`](Self::pen_deg) and [`beam`](Self::beam) hold.
+    /// RMT, a timer with DMA, whatever makes steps from a buffer of delays. With no pulse it is a pause, or
+    /// the servo or the laser: from then on [`pen_deg`](Self::pen_deg) and [`beam`](Self::beam) hold.
     ///
-    /// A step counts as made when it has been given. What was still in the buffer when that was stopped is told
-    /// by [`not_made`](Self::not_made).
+    /// A step counts as made when it has been given. What was still in the buffer when that was stopped is
+    /// told by [`not_made`](Self::not_made).
     pub fn stream(&mut self) -> Option<(u32, Option<Pulse<'_>>)> {
         self.obey();
         let before_us = self.time_us;
@@ -313,11 +313,6 @@ impl<'a> Stepping<'a> {
     }
 
     #[inline(always)] // in `tick`, which is the interrupt
-    fn made(&mut self, pulse: Pulse<'_>) {
-        self.count(pulse.into());
-    }
-
-    #[inline(always)] // in `tick`, which is the interrupt
     fn count(&mut self, step: StepPair) {
         let shared = self.out.shared;
         if step.x != 0 {
@@ -393,12 +388,13 @@ impl<'a> Stepping<'a> {
     /// Takes the state of the emergency stop button; pressed, no step is given any more, and it latches. Or
     /// [`Planning::emergency_stop`](super::Planning::emergency_stop) does.
     pub fn emergency_stop(&mut self, pressed: bool) {
-        self.found.button = pressed;
-        self.read_switches();
-        if pressed && self.found.blocked.is_none() {
-            self.found.blocked = Some(crate::safety::Blocked::Stopped);
+        if pressed && !self.found.button {
+            self.found.presses = self.found.presses.wrapping_add(1);
+            self.found.blocked = Some(Blocked::Stopped);
             self.leave_out();
         }
+        self.found.button = pressed;
+        self.read_switches();
         self.tell();
     }
 
