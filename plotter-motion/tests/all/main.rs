@@ -21,6 +21,7 @@ mod estimate;
 mod exact_discretization;
 mod felt;
 mod figure;
+#[cfg(feature = "step-ahead")]
 mod firmware_ahead;
 mod firmware_by_hand;
 mod firmware_grbl;
