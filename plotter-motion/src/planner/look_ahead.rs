@@ -149,7 +149,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         if !self.has_room() {
             return Err(PlanError::Full);
         }
-        self.stale = true;
+        self.more_comes();
         self.front.push(op, &self.limits, &mut self.ring)
     }
 
@@ -163,7 +163,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         if !self.has_room() {
             return Err(PlanError::Full);
         }
-        self.stale = true;
+        self.more_comes();
         self.front.jog(&to, speed_mm_s, &self.limits, &mut self.ring)
     }
 
@@ -249,7 +249,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         if !self.has_room() {
             return Err(PlanError::Full);
         }
-        self.stale = true;
+        self.more_comes();
         self.front.end_run(&self.limits, &mut self.ring);
         Ok(())
     }
@@ -270,6 +270,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// that takes six years.
     pub fn hold(&mut self) {
         self.hold = true;
+        self.time_law.choose_again();
         self.time_law.brake(&mut self.ring, &self.limits);
     }
 
@@ -282,8 +283,44 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// Ends a feed hold: the machine goes on from where it is.
     pub fn resume(&mut self) {
         if core::mem::take(&mut self.hold) {
+            self.time_law.choose_again();
             self.time_law.go_on(&mut self.ring, &self.limits);
         }
+    }
+
+    /// Blocks are about to be added.
+    fn more_comes(&mut self) {
+        self.stale = true;
+        self.time_law.choose_again();
+    }
+
+    /// Does a part of what [`next_action`](Self::next_action) has to do, and says whether there is more to
+    /// do before that only has to give it out. For a main loop that has other things to do between: with a
+    /// limited jerk a phase takes a search of up to some ten parts. Nothing depends on it but when the work is
+    /// done.
+    ///
+    /// ```
+    /// # use plotter_motion::{Planner, PlannerSettings, PlotOp, Point, planner::PlanError};
+    /// let settings = PlannerSettings { jerk_mm_s3: Some(20_000.0), ..PlannerSettings::default() };
+    /// let mut planner = Planner::<16>::new(settings)?;
+    /// for (x, y) in [(5.0, 0.0), (9.0, 1.0), (20.0, 1.5), (30.0, 0.0)] {
+    ///     planner.push(PlotOp::Draw { to: Point::new(x, y), feed_mm_s: None })?;
+    /// }
+    /// planner.finish()?;
+    /// let mut parts = 0;
+    /// loop {
+    ///     while planner.prepare() {
+    ///         parts += 1; // bytes could be received here
+    ///     }
+    ///     if planner.next_action().is_none() {
+    ///         break;
+    ///     }
+    /// }
+    /// assert!(parts > 10);
+    /// # Ok::<(), PlanError>(())
+    /// ```
+    pub fn prepare(&mut self) -> bool {
+        self.time_law.choose_part(&self.ring, &self.limits, self.hold)
     }
 
     /// Plans the blocks that were added.

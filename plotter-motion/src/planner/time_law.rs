@@ -8,6 +8,10 @@ use super::ramps::Ramps;
 use super::ring::Ring;
 use super::s_curve::SCurveState;
 
+/// Looks of a search for a phase that are taken together: each reckons the braking for every place ahead, so a
+/// part takes about as long as what goes before the search.
+const LOOKS: u32 = 2;
+
 /// What is left of the course given last: constant accelerations, or S-curves where the settings have a jerk.
 /// An S-curve leaves its block in the ring until it is over, ramps take it out.
 #[derive(Clone, Debug, PartialEq)]
@@ -130,5 +134,25 @@ impl<M: Modes> TimeLaw<M> {
     ) -> Option<Phase> {
         let jerk_mm_s3 = limits.settings.jerk_of::<M>()?;
         self.0.second_mut()?.next_phase(ring, limits.along_with_jerk().into(), jerk_mm_s3, hold)
+    }
+
+    /// A part of the search for it; whether there is more to do first.
+    pub(super) fn choose_part<const N: usize>(
+        &mut self,
+        ring: &Ring<N>,
+        limits: &Limits,
+        hold: bool,
+    ) -> bool {
+        let Some(jerk_mm_s3) = limits.settings.jerk_of::<M>() else { return false };
+        self.0.second_mut().is_some_and(|s_curve| {
+            s_curve.choose_part(LOOKS, ring, limits.along_with_jerk().into(), jerk_mm_s3, hold)
+        })
+    }
+
+    /// Something else is asked of it: what has been chosen before its time is chosen again.
+    pub(super) fn choose_again(&mut self) {
+        if let Some(s_curve) = self.0.second_mut() {
+            s_curve.choose_again();
+        }
     }
 }

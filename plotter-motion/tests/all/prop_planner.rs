@@ -168,14 +168,30 @@ fn actions_told<const N: usize>(
     settings: PlannerSettings,
     ops: &[PlotOp],
     touches: &[(usize, Touch)],
+    told: impl FnMut(Action, (f64, f64)),
+) -> Vec<Action> {
+    actions_in_parts::<N>(settings, ops, touches, &[0], told)
+}
+
+/// The same by a planner that works ahead: `parts` says how often before each action.
+fn actions_in_parts<const N: usize>(
+    settings: PlannerSettings,
+    ops: &[PlotOp],
+    touches: &[(usize, Touch)],
+    parts: &[u8],
     mut told: impl FnMut(Action, (f64, f64)),
 ) -> Vec<Action> {
     let mut turns = 0;
+    let mut parts = parts.iter().cycle();
     let mut touches = touches.to_vec();
     let mut shares = (1.0, 1.0);
     let mut planner = Planner::<N>::new(settings).unwrap();
     let (mut actions, mut waiting, mut finished) = (Vec::new(), ops.iter().copied().peekable(), false);
     loop {
+        // Before there is more to plan, before it is touched, and before the action is asked for.
+        let mut work =
+            |planner: &mut Planner<N>| (0..*parts.next().unwrap()).for_each(|_| _ = planner.prepare());
+        work(&mut planner);
         while let Some(&op) = waiting.peek() {
             match planner.push(op) {
                 Ok(()) => waiting.next(),
@@ -186,6 +202,7 @@ fn actions_told<const N: usize>(
         if !finished && waiting.peek().is_none() {
             finished = planner.finish().is_ok();
         }
+        work(&mut planner);
         for &(_, touch) in touches.iter().filter(|(at, _)| *at == actions.len()) {
             match touch {
                 Touch::Hold => planner.hold(),
@@ -196,6 +213,7 @@ fn actions_told<const N: usize>(
             }
         }
         touches.retain(|(at, _)| *at != actions.len());
+        work(&mut planner);
         match planner.next_action() {
             Some(action) => {
                 told(action, shares);
@@ -506,6 +524,21 @@ proptest! {
         touches in prop::collection::vec((0..200_usize, touch()), 1..12),
     ) {
         check(settings, &path(&parts), &touches)?;
+    }
+
+    #[test]
+    fn work_that_is_done_ahead_in_parts_changes_no_action(
+        ops in prop::collection::vec(operation(), 1..20),
+        settings in settings(),
+        jerk_mm_s3 in 1e2..1e6,
+        touches in prop::collection::vec((0..200_usize, touch()), 0..6),
+        parts in prop::collection::vec(prop_oneof![0..6_u8, Just(100)], 1..30),
+    ) {
+        let settings = PlannerSettings { jerk_mm_s3: Some(jerk_mm_s3), ..settings };
+        let ops = path(&ops);
+        let at_once = actions_told::<16>(settings, &ops, &touches, |_, _| {});
+        let in_parts = actions_in_parts::<16>(settings, &ops, &touches, &parts, |_, _| {});
+        prop_assert_eq!(at_once, in_parts);
     }
 
     #[test]

@@ -153,6 +153,38 @@ fn plan(
     }
 }
 
+#[inline(never)]
+fn prepare(planner: &mut Planner<16>) -> bool {
+    planner.prepare()
+}
+
+/// As [`plan`], by a main loop that does other things between parts of a search: what each part takes.
+fn parts(counter: &Counter, settings: PlannerSettings, mut ops: impl Iterator<Item = PlotOp>) -> Tally {
+    let mut parts = Tally::default();
+    let Ok(mut planner) = Planner::<16>::new(settings) else { return parts };
+    let mut finished = false;
+    loop {
+        while !finished && planner.has_room() {
+            finished = match ops.next() {
+                Some(op) => !push(&mut planner, op),
+                None => planner.finish().is_ok(),
+            };
+        }
+        loop {
+            let (more, instructions) = counter.count(|| prepare(black_box(&mut planner)));
+            parts.add(instructions);
+            if !more {
+                break;
+            }
+        }
+        let (action, instructions) = counter.count(|| next_action(black_box(&mut planner)));
+        parts.add(instructions);
+        if action.is_none() {
+            return parts;
+        }
+    }
+}
+
 /// What the main loop does for a step: reckon it, and put it into the queue.
 #[inline(never)]
 fn fill(steps: &mut StepGen<Cartesian>, queue: &mut StepQueue<64>) -> bool {
@@ -259,6 +291,11 @@ fn main() -> ! {
         }
         print(format_args!("plan {mode} all"), all);
     }
+    let mut all = parts(&counter, curved, drawings::hatch());
+    all.join(parts(&counter, curved, drawings::spiral()));
+    all.join(parts(&counter, curved, drawings::zigzag()));
+    all.join(parts(&counter, curved, drawings::strokes()));
+    print("plan s-curve part", all);
 
     let motor = MotorScale { steps_per_mm: 100.0, inverted: false };
     if let Ok(kinematics) = Cartesian::new(motor, motor) {

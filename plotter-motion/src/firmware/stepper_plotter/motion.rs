@@ -209,7 +209,13 @@ impl<M: Modes> Motion<M> {
                             return Some(Step { at, pulse });
                         }
                     }
-                    None if self.go_on(now, link) => {}
+                    None if self.go_on(now, link) =>
+                    {
+                        #[cfg(feature = "step-ahead")]
+                        if self.ahead.in_parts {
+                            return None;
+                        }
+                    }
                     None => return None,
                 },
             }

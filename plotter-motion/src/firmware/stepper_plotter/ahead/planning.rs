@@ -30,7 +30,9 @@ const FAR_US: u64 = 1_000_000;
 /// some lines of a slow line, and a main loop that is away.
 const WAITS_US: u64 = 50_000;
 /// Most things that one call of [`Planning::plan`] puts in: its longest time is that of two stretches, and
-/// what the planner needs for a block.
+/// what the planner needs for a block, or for a part of a search for one: see [`Planner::prepare`].
+///
+/// [`Planner::prepare`]: crate::Planner::prepare
 const MOST_PUT: usize = 32;
 
 /// How often there may be more room, a stop that has been heard of or a standstill: a tenth of what is
@@ -155,12 +157,25 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
         self.look(now);
         self.planned_at = now;
         self.is_behind = false;
-        let more = (0..MOST_PUT).all(|_| self.plan_one(now)) || self.is_behind;
+        let more = self.plan_some(now);
         if !more || self.is_behind {
             self.put_gathered();
         }
         self.end_call(now);
         more
+    }
+
+    /// Plans some things, or a part of one that takes long; says whether there may be more.
+    fn plan_some(&mut self, now: Duration) -> bool {
+        for _ in 0..MOST_PUT {
+            if !self.plan_one(now) {
+                return self.is_behind;
+            }
+            if self.plotter.motion.take_in_parts() {
+                break;
+            }
+        }
+        true
     }
 
     /// Plans one thing, if there is one and room for it; says whether there may be more.

@@ -29,6 +29,8 @@ pub(super) struct Ahead {
     stretches: u32,
     /// All that is planned has been given; the motors are not there yet.
     ended: bool,
+    /// What the planner does next is done in part.
+    pub(super) in_parts: bool,
     has_homed: bool,
 }
 
@@ -93,6 +95,17 @@ impl<M: Modes> Motion<M> {
     /// Asks the planner for more, at the time of the last event; says whether there may be an event now.
     pub(in super::super) fn plan_more(&mut self, clock_us: u64, link: &mut Link) -> bool {
         !self.waits_for_time() && self.go_on(Duration::from_micros(clock_us), link)
+    }
+
+    /// Whether a part of what the planner has to do next was done, and there is more of it.
+    pub(super) fn plans_a_part(&mut self) -> bool {
+        self.ahead.in_parts = self.ahead.made.is_some() && self.planner.prepare();
+        self.ahead.in_parts
+    }
+
+    /// Whether there was, which is left for the next call.
+    pub(in super::super) const fn take_in_parts(&mut self) -> bool {
+        core::mem::replace(&mut self.ahead.in_parts, false)
     }
 
     /// Takes that event: a step, or something else that is done at once.

@@ -80,6 +80,10 @@ impl<M: Modes> Motion<M> {
             self.due = Some(start_at);
             return false;
         }
+        #[cfg(feature = "step-ahead")]
+        if self.plans_a_part() {
+            return true;
+        }
         if let Some(action) = self.planner.next_action() {
             self.start_at = None;
             if core::mem::take(&mut self.at_rest) {
