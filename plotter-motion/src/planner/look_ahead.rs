@@ -50,7 +50,7 @@ pub struct Planner<const N: usize, M: Modes = AllModes> {
     limits: Limits,
     front: Front<M>,
     ring: Ring<N>,
-    /// Whether blocks were added since the ring was planned.
+    /// Whether blocks were added since the ring was planned, or a phase of an S-curve was chosen.
     stale: bool,
     /// The rest of the course that was given out last.
     time_law: TimeLaw<M>,
@@ -149,7 +149,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         if !self.has_room() {
             return Err(PlanError::Full);
         }
-        self.more_comes();
+        self.stale = true;
         self.front.push(op, &self.limits, &mut self.ring)
     }
 
@@ -163,7 +163,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         if !self.has_room() {
             return Err(PlanError::Full);
         }
-        self.more_comes();
+        self.stale = true;
         self.front.jog(&to, speed_mm_s, &self.limits, &mut self.ring)
     }
 
@@ -249,7 +249,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         if !self.has_room() {
             return Err(PlanError::Full);
         }
-        self.more_comes();
+        self.stale = true;
         self.front.end_run(&self.limits, &mut self.ring);
         Ok(())
     }
@@ -288,12 +288,6 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         }
     }
 
-    /// Blocks are about to be added.
-    fn more_comes(&mut self) {
-        self.stale = true;
-        self.time_law.choose_again();
-    }
-
     /// Does a part of what [`next_action`](Self::next_action) has to do, and says whether there is more to
     /// do before that only has to give it out. For a main loop that has other things to do between: with a
     /// limited jerk a phase takes a search of up to some ten parts. Nothing depends on it but when the work is
@@ -320,7 +314,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// # Ok::<(), PlanError>(())
     /// ```
     pub fn prepare(&mut self) -> bool {
-        self.time_law.choose_part(&self.ring, &self.limits, self.hold)
+        self.time_law.choose_part(&self.ring, &self.limits, self.hold, &mut self.stale)
     }
 
     /// Plans the blocks that were added.
@@ -348,7 +342,9 @@ impl<const N: usize, M: Modes> Planner<N, M> {
 
     /// The next action other than a phase with constant acceleration.
     fn after_ramps(&mut self) -> Option<Action> {
-        if let Some(phase) = self.time_law.next_s_curve(&mut self.ring, &self.limits, self.hold) {
+        if let Some(phase) =
+            self.time_law.next_s_curve(&mut self.ring, &self.limits, self.hold, &mut self.stale)
+        {
             return Some(Action::Phase(phase));
         }
         if self.is_held() {

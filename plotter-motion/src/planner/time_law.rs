@@ -131,9 +131,14 @@ impl<M: Modes> TimeLaw<M> {
         ring: &mut Ring<N>,
         limits: &Limits,
         hold: bool,
+        stale: &mut bool,
     ) -> Option<Phase> {
         let jerk_mm_s3 = limits.settings.jerk_of::<M>()?;
-        self.0.second_mut()?.next_phase(ring, limits.along_with_jerk().into(), jerk_mm_s3, hold)
+        let s_curve = self.0.second_mut()?;
+        if core::mem::take(stale) {
+            s_curve.choose_again();
+        }
+        s_curve.next_phase(ring, limits.along_with_jerk().into(), jerk_mm_s3, hold)
     }
 
     /// A part of the search for it; whether there is more to do first.
@@ -142,11 +147,14 @@ impl<M: Modes> TimeLaw<M> {
         ring: &Ring<N>,
         limits: &Limits,
         hold: bool,
+        stale: &mut bool,
     ) -> bool {
         let Some(jerk_mm_s3) = limits.settings.jerk_of::<M>() else { return false };
-        self.0.second_mut().is_some_and(|s_curve| {
-            s_curve.choose_part(LOOKS, ring, limits.along_with_jerk().into(), jerk_mm_s3, hold)
-        })
+        let Some(s_curve) = self.0.second_mut() else { return false };
+        if core::mem::take(stale) {
+            s_curve.choose_again();
+        }
+        s_curve.choose_part(LOOKS, ring, limits.along_with_jerk().into(), jerk_mm_s3, hold)
     }
 
     /// Something else is asked of it: what has been chosen before its time is chosen again.

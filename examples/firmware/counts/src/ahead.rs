@@ -1,5 +1,6 @@
 //! The stepper plotter's controller in two halves on a processor of 100 MHz: what planning takes is how long
-//! it takes, and of every tenth of a second the main loop is away for 20 ms.
+//! it takes, and of every tenth of a second the main loop is away for 20 ms. Or on that of an RP2040, which has
+//! no unit for numbers with a point.
 
 use crate::counter::{Counter, Tally};
 use core::fmt::Write as _;
@@ -10,8 +11,9 @@ use plotter_motion::firmware::stepper_plotter::{
 };
 use plotter_motion::{LimitSwitches, PlannerSettings, PlotOp, SafetyGate, StepPair};
 
-/// Instructions in a microsecond, each taken for a cycle.
-const PER_US: u64 = 100;
+/// Instructions in a microsecond: at 100 MHz each is taken for a cycle. At the RP2040's 125 MHz for two, as a
+/// Cortex-M0+ takes for a load or a branch (Cortex-M0+ Technical Reference Manual, 3.3); others take one.
+pub const PER_US: u64 = if cfg!(feature = "rp2040") { 62 } else { 100 };
 /// The main loop is away for the last of every so many us.
 const EVERY_US: u64 = 100_000;
 const AWAY_US: u64 = 20_000;
@@ -30,7 +32,8 @@ pub struct Figures {
     pub is_same: bool,
     pub plan: Tally,
     pub tick: Tally,
-    /// Share of the processor that planning and stepping take, 1/1000.
+    /// Instructions that planning and stepping take, and the share of the processor that this is, 1/1000.
+    pub instructions: u64,
     pub busy: u64,
     pub ms: u64,
 }
@@ -291,6 +294,7 @@ pub fn draw<I: Iterator<Item = PlotOp>>(
     board.figures.late = board.planning.lateness().steps();
     board.figures.slowed = board.planning.underruns().slowed_steps;
     board.figures.is_same = board.row.sum == alone.sum;
+    board.figures.instructions = board.busy;
     board.figures.busy = board.busy * 1000 / board.now.max(1);
     board.figures.ms = board.us() / 1000;
     board.figures

@@ -222,54 +222,71 @@ fn interrupt(queue: &mut StepQueue<64>, gate: &SafetyGate, registers: &Registers
 }
 
 #[cfg(feature = "ahead")]
-/// Late steps of both halves, with the main loop away for 20 ms in every 100 ms, up to 40,000 steps a second
-/// of each motor.
-fn in_two_halves(counter: &Counter) {
+/// Late steps of both halves, with the main loop away for 20 ms in every 100 ms, at so many steps a second of
+/// each motor.
+fn in_two_halves(
+    counter: &Counter,
+    memory: &mut StepsAhead<{ ahead::WORDS }>,
+    rate: u32,
+    mode: &str,
+    planner: PlannerSettings,
+    drawings: &[&str],
+) {
+    let speed_mm_s = f64::from(rate) / 87.58;
+    let planner = PlannerSettings { speed_mm_s, travel_speed_mm_s: speed_mm_s, accel_mm_s2: 10_000.0, ..planner };
+    let (mut plan, mut tick) = (Tally::default(), Tally::default());
+    for drawing in drawings {
+        let figures = match *drawing {
+            "hatch" => ahead::draw(counter, planner, memory, || drawings::hatch().take(8)),
+            "spiral" => ahead::draw(counter, planner, memory, || drawings::spiral().take(300)),
+            "zigzag" => ahead::draw(counter, planner, memory, || drawings::zigzag().take(80)),
+            _ => ahead::draw(counter, planner, memory, || drawings::strokes().take(64)),
+        };
+        let ahead::Figures { steps, late, slowed, is_same, instructions, busy, ms, .. } = figures;
+        hprintln!(
+            "ahead {} {} at {}: {} steps in {} ms, {} late, {} slowed, same {}, {} instructions a step, busy {} of 1000",
+            mode, drawing, rate, steps, ms, late, slowed, is_same, instructions / u64::from(steps.max(1)), busy
+        );
+        plan.join(figures.plan);
+        tick.join(figures.tick);
+    }
+    print(format_args!("ahead {mode} call of plan"), plan);
+    print(format_args!("ahead {mode} step interrupt"), tick);
+}
+
+#[cfg(feature = "ahead")]
+/// The same in all modes; or at several rates in mode exact.
+fn all_in_two_halves(counter: &Counter) {
     let mut memory = StepsAhead::<{ ahead::WORDS }>::new();
     let memory = &mut memory;
-    let speed_mm_s = 40_000.0 / 87.58;
-    let exact = PlannerSettings {
-        speed_mm_s,
-        travel_speed_mm_s: speed_mm_s,
-        accel_mm_s2: 10_000.0,
-        ..PlannerSettings::default()
-    };
-    let path = PathMode::Tolerance { path_tolerance_mm: 0.05 };
-    let jerk_mm_s3 = Some(500_000.0);
-    for (mode, planner) in [
-        ("exact", exact),
-        ("tolerance", PlannerSettings { path, ..exact }),
-        ("s-curve", PlannerSettings { jerk_mm_s3, ..exact }),
-        ("tolerance s-curve", PlannerSettings { path, jerk_mm_s3, ..exact }),
-    ] {
-        let (mut plan, mut tick) = (Tally::default(), Tally::default());
-        // The emulator takes a second for some million instructions: of the other modes two drawings.
-        let drawings = if mode == "exact" { &["hatch", "spiral", "zigzag", "strokes"][..] } else { &["spiral", "strokes"] };
-        for drawing in drawings {
-            let figures = match *drawing {
-                "hatch" => ahead::draw(counter, planner, memory, || drawings::hatch().take(8)),
-                "spiral" => ahead::draw(counter, planner, memory, || drawings::spiral().take(300)),
-                "zigzag" => ahead::draw(counter, planner, memory, || drawings::zigzag().take(80)),
-                _ => ahead::draw(counter, planner, memory, || drawings::strokes().take(64)),
-            };
-            let ahead::Figures { steps, late, slowed, is_same, busy, ms, .. } = figures;
-            hprintln!(
-                "ahead {} {}: {} steps in {} ms, {} late, {} slowed, same {}, busy {} of 1000",
-                mode, drawing, steps, ms, late, slowed, is_same, busy
-            );
-            plan.join(figures.plan);
-            tick.join(figures.tick);
+    let exact = PlannerSettings::default();
+    if cfg!(feature = "rp2040") {
+        for rate in [4_000, 6_000, 8_000, 10_000, 15_000, 20_000] {
+            in_two_halves(counter, memory, rate, "exact", exact, &["hatch", "spiral", "strokes"]);
         }
-        print(format_args!("ahead {mode} call of plan"), plan);
-        print(format_args!("ahead {mode} step interrupt"), tick);
+    } else {
+        let path = PathMode::Tolerance { path_tolerance_mm: 0.05 };
+        let jerk_mm_s3 = Some(500_000.0);
+        // The emulator takes a second for some million instructions: of the other modes two drawings.
+        let some = &["spiral", "strokes"];
+        in_two_halves(counter, memory, 40_000, "exact", exact, &["hatch", "spiral", "zigzag", "strokes"]);
+        in_two_halves(counter, memory, 40_000, "tolerance", PlannerSettings { path, ..exact }, some);
+        in_two_halves(counter, memory, 40_000, "s-curve", PlannerSettings { jerk_mm_s3, ..exact }, some);
+        let both = PlannerSettings { path, jerk_mm_s3, ..exact };
+        in_two_halves(counter, memory, 40_000, "tolerance s-curve", both, some);
     }
-    hprintln!("ahead: {} bytes between the halves", size_of_val(memory));
+    hprintln!("ahead: {} bytes between the halves, {} instructions a microsecond", size_of_val(memory), ahead::PER_US);
 }
 
 #[entry]
 fn main() -> ! {
     let Some(peripherals) = cortex_m::Peripherals::take() else { loop {} };
     let counter = Counter::new(peripherals.SYST);
+    if cfg!(feature = "rp2040") {
+        #[cfg(feature = "rp2040")]
+        all_in_two_halves(&counter);
+        debug::exit(debug::EXIT_SUCCESS);
+    }
     let Ok(machine) = Machine::new(MachineConfig::default()) else { loop {} };
 
     gantry(&counter, &machine, "published", LineTracking::with_settings(LineTrackingSettings::of(&machine)));
@@ -322,7 +339,7 @@ fn main() -> ! {
         print("step interrupt", made);
     }
     #[cfg(feature = "ahead")]
-    in_two_halves(&counter);
+    all_in_two_halves(&counter);
     for (name, dust) in [("joint from 16 crossings", 0), ("joint with three grains of dust", 3)] {
         let (tally, silent) = joint::joints(&counter, dust);
         hprintln!("{}: {} of {} refused", name, silent, tally.count());
