@@ -341,6 +341,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     }
 
     /// The next action other than a phase with constant acceleration.
+    #[cfg_attr(target_os = "none", inline(never))] // most actions are phases
     fn after_ramps(&mut self) -> Option<Action> {
         if let Some(phase) =
             self.time_law.next_s_curve(&mut self.ring, &self.limits, self.hold, &mut self.stale)
