@@ -244,6 +244,8 @@ const fn drive(x: Duty, y: Duty) -> Drive<'static> {
 pub struct Pulse<'gate> {
     x: i8,
     y: i8,
+    #[cfg(feature = "third-axis")]
+    z: i8,
     gate: PhantomData<&'gate SafetyGate>,
 }
 
@@ -260,9 +262,22 @@ impl Pulse<'_> {
         self.y
     }
 
+    /// The step of a third motor: -1, 0 or 1. It comes alone.
+    #[cfg(feature = "third-axis")]
+    #[must_use]
+    pub const fn z(self) -> i8 {
+        self.z
+    }
+
     /// As [`Drive::kept`].
     pub(crate) const fn kept(self) -> Pulse<'static> {
-        pulse(StepPair { x: self.x, y: self.y })
+        Pulse {
+            x: self.x,
+            y: self.y,
+            #[cfg(feature = "third-axis")]
+            z: self.z,
+            gate: PhantomData,
+        }
     }
 }
 
@@ -273,7 +288,13 @@ impl From<Pulse<'_>> for StepPair {
 }
 
 const fn pulse(step: StepPair) -> Pulse<'static> {
-    Pulse { x: step.x, y: step.y, gate: PhantomData }
+    Pulse {
+        x: step.x,
+        y: step.y,
+        #[cfg(feature = "third-axis")]
+        z: 0,
+        gate: PhantomData,
+    }
 }
 
 /// Power of a laser, in 65535ths, that may be switched on: by [`SafetyGate::pass_laser`] only. It ends when
@@ -315,11 +336,19 @@ pub enum Blocked {
         /// At which of its ends.
         end: Direction,
     },
+    /// A step of a third motor leads into a pressed limit switch of its axis.
+    #[cfg(feature = "third-axis")]
+    LimitZ {
+        /// At which of its ends.
+        end: Direction,
+    },
 }
 
 impl fmt::Display for Blocked {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (axis, end) = match self {
+            #[cfg(feature = "third-axis")]
+            Self::LimitZ { end } => ("z", end),
             Self::Stopped => return f.write_str("the machine is stopped: reset the emergency stop first"),
             Self::Limit { axis: Axis::X, end } => ("x", end),
             Self::Limit { axis: Axis::Y, end } => ("y", end),
@@ -384,6 +413,17 @@ impl LimitSwitches {
     }
 }
 
+/// Which limit switches of a third axis are pressed. A machine without them has none pressed.
+#[cfg(feature = "third-axis")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ZSwitches {
+    /// At the lower end.
+    pub lower: bool,
+    /// At the upper end.
+    pub upper: bool,
+}
+
 /// The only way from a [`Demand`] to a [`Drive`].
 ///
 /// A pressed limit switch takes the drive *towards* it and leaves every other. The emergency stop takes all
@@ -414,6 +454,8 @@ impl LimitSwitches {
 #[derive(Debug, PartialEq, Eq)]
 pub struct SafetyGate {
     limits: LimitSwitches,
+    #[cfg(feature = "third-axis")]
+    z: ZSwitches,
     button_pressed: bool,
     latched: bool,
     stopped_by_host: bool,
@@ -437,6 +479,8 @@ impl SafetyGate {
     pub const fn new(limits: LimitSwitches, button_pressed: bool) -> Self {
         let mut gate = Self {
             limits,
+            #[cfg(feature = "third-axis")]
+            z: ZSwitches { lower: false, upper: false },
             button_pressed,
             latched: button_pressed,
             stopped_by_host: false,
@@ -597,6 +641,47 @@ impl SafetyGate {
             return Err(Blocked::Limit { axis: Axis::Y, end: Direction::Minus });
         }
         Ok(pulse(step))
+    }
+
+    /// Notes the limit switches of a third axis; until then none of them is pressed.
+    #[cfg(feature = "third-axis")]
+    pub const fn set_z_limits(&mut self, switches: ZSwitches) {
+        self.z = switches;
+    }
+
+    /// The limit switches of a third axis as last noted.
+    #[cfg(feature = "third-axis")]
+    #[must_use]
+    pub const fn z_limits(&self) -> ZSwitches {
+        self.z
+    }
+
+    /// Lets a step of a third motor through, 1 upwards and -1 downwards: not into a pressed switch of its
+    /// axis, nor while the machine is stopped.
+    ///
+    /// ```
+    /// # use plotter_motion::{Direction, LimitSwitches, SafetyGate, safety::{Blocked, ZSwitches}};
+    /// let mut gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+    /// gate.set_z_limits(ZSwitches { upper: true, lower: false });
+    /// assert_eq!(gate.pass_z_step(1), Err(Blocked::LimitZ { end: Direction::Plus }));
+    /// assert_eq!(gate.pass_z_step(-1).map(|pulse| (pulse.x(), pulse.y(), pulse.z())), Ok((0, 0, -1)));
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Blocked`] says what is in the way.
+    #[cfg(feature = "third-axis")]
+    pub const fn pass_z_step(&self, step: i8) -> Result<Pulse<'_>, Blocked> {
+        if self.stopped {
+            return Err(Blocked::Stopped);
+        }
+        if step > 0 && self.z.upper {
+            return Err(Blocked::LimitZ { end: Direction::Plus });
+        }
+        if step < 0 && self.z.lower {
+            return Err(Blocked::LimitZ { end: Direction::Minus });
+        }
+        Ok(Pulse { x: 0, y: 0, z: step.signum(), gate: PhantomData })
     }
 
     /// Lets the power of a laser through, unless the machine is stopped.

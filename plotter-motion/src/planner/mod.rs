@@ -25,6 +25,7 @@ mod modes;
 mod phase;
 mod ramps;
 mod ring;
+mod rise;
 mod rounding;
 mod s_curve;
 mod settings;
@@ -36,7 +37,11 @@ pub use error::PlanError;
 pub use junction::junction_speed;
 pub use look_ahead::Planner;
 pub(crate) use modes::Keep;
+#[cfg(feature = "third-axis")]
+pub use modes::ThreeAxes;
 pub use modes::{AllModes, ExactOnly, ExactPen, Modes};
 pub(crate) use modes::{Here, Nowhere, Part};
 pub use phase::{Action, Course, Phase, Shape};
+#[cfg(feature = "third-axis")]
+pub use rise::ZLimits;
 pub use settings::{AccelLimit, PathMode, PlannerSettings};

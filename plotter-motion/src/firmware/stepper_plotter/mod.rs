@@ -199,6 +199,8 @@ mod settings;
 mod startup_lines;
 mod status;
 mod stored_bytes;
+#[cfg(feature = "third-axis")]
+mod z_axis;
 
 #[cfg(feature = "step-ahead")]
 pub use ahead::{Planning, Stepping, StepsAhead, Underruns};
@@ -217,3 +219,5 @@ pub use settings::{CheckedSettings, Dialect, SettingsError, StepperPlotterSettin
 pub use startup_lines::StartupLines;
 pub use status::{Activity, Percents, Status};
 pub use stored_bytes::StoredError;
+#[cfg(feature = "third-axis")]
+pub use z_axis::{ZAxis, ZHoming, ZHomingError, ZPen};

@@ -4,6 +4,8 @@
 mod ahead;
 mod by_hand;
 mod work;
+#[cfg(feature = "third-axis")]
+mod z;
 
 #[cfg(feature = "step-ahead")]
 pub(super) use ahead::{Made, whole_us};
@@ -92,6 +94,8 @@ pub struct Motion<M: Modes = AllModes> {
     lateness: Lateness,
     #[cfg(feature = "step-ahead")]
     ahead: ahead::Ahead,
+    #[cfg(feature = "third-axis")]
+    z: M::Rise<z::ZState>,
 }
 
 impl Motion {
@@ -132,7 +136,11 @@ impl<M: Modes> Motion<M> {
         if let Some(built) = built.get_mut() {
             *built = *settings;
         }
-        Self {
+        #[cfg_attr(
+            not(feature = "third-axis"),
+            expect(unused_mut, reason = "nothing is told of a third axis")
+        )]
+        let mut motion = Self {
             settings: *settings,
             planner,
             steps,
@@ -160,7 +168,12 @@ impl<M: Modes> Motion<M> {
             lateness: Lateness::default(),
             #[cfg(feature = "step-ahead")]
             ahead: ahead::Ahead::default(),
-        }
+            #[cfg(feature = "third-axis")]
+            z: M::Rise::default(),
+        };
+        #[cfg(feature = "third-axis")]
+        motion.tell_z();
+        motion
     }
 
     /// The next step that is due by `now`, if there is one and the motors' drivers can take it. One that they
@@ -294,6 +307,8 @@ impl<M: Modes> Motion<M> {
         if let Ok(planner) = Planner::with_modes(settings.limits()) {
             self.settings = settings;
             self.planner = planner;
+            #[cfg(feature = "third-axis")]
+            self.tell_z();
         }
         self.percents = Percents::default();
         if self.gate.is_latched() {
@@ -369,6 +384,10 @@ impl<M: Modes> Motion<M> {
             activity,
             planned: u8::try_from(planned).unwrap_or(u8::MAX),
             at: self.position_mm(),
+            #[cfg(feature = "third-axis")]
+            z_mm: self.z_mm(),
+            #[cfg(feature = "third-axis")]
+            z_switches: self.gate.z_limits(),
             speed_mm_s,
             laser: self.beam.power(),
             percents: self.percents,
@@ -428,6 +447,8 @@ impl<M: Modes> Motion<M> {
         self.planner.clear(at);
         darken(&mut self.planner);
         self.steps.clear(self.carriage());
+        #[cfg(feature = "third-axis")]
+        self.tell_z();
         if let Some(play) = self.play.get_mut() {
             play.stopped();
         }
@@ -473,6 +494,9 @@ fn step_gen<M: Modes>(settings: &StepperPlotterSettings) -> StepGen<Cartesian, M
     // mDraw moves the servo itself, and the motion waits for that.
     let pen_settle = match settings.dialect {
         Dialect::MDraw => Duration::ZERO,
+        // A motor's steps are over when they are over.
+        #[cfg(feature = "third-axis")]
+        Dialect::Grbl if settings.z.is_some() => Duration::ZERO,
         Dialect::Grbl => settings.pen_settle,
     };
     let timing = StepGenSettings { clock_hz: CLOCK_HZ, pen_settle, laser: settings.laser };

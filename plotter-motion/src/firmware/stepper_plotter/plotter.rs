@@ -115,6 +115,27 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
         self.work(now);
     }
 
+    /// Takes the state of the limit switches of a third axis.
+    #[cfg(feature = "third-axis")]
+    pub fn z_switches(&mut self, now: Duration, switches: crate::safety::ZSwitches) {
+        self.motion.z_switches(switches);
+        self.work(now);
+    }
+
+    /// The height of a third axis by the steps really made, mm; none of a machine with two.
+    #[cfg(feature = "third-axis")]
+    #[must_use]
+    pub fn z_mm(&self) -> Option<f64> {
+        self.motion.z_mm()
+    }
+
+    /// By how many steps the third axis stood higher than was believed, as its last homing has found.
+    #[cfg(feature = "third-axis")]
+    #[must_use]
+    pub fn z_off_steps(&self) -> Option<i32> {
+        self.motion.z_off_steps()
+    }
+
     /// Takes the state of the emergency stop button; pressed, it stops everything at once and latches.
     pub fn emergency_stop(&mut self, now: Duration, pressed: bool) {
         self.motion.emergency_stop(pressed, &mut self.link);

@@ -1,5 +1,7 @@
 //! [`StepperPlotterSettings`]: what the controller has to know of its machine.
 
+#[cfg(feature = "third-axis")]
+use super::ZAxis;
 use crate::gcode::PenConvention;
 use crate::kinematics::{Backlash, Cartesian, MotorScale, ScaleError};
 use crate::planner::{AllModes, Modes};
@@ -112,6 +114,10 @@ pub struct StepperPlotterSettings {
     pub home_x: HomingAxis,
     /// How y is homed.
     pub home_y: HomingAxis,
+    /// A third axis. It takes [`ThreeAxes`](crate::planner::ThreeAxes).
+    #[cfg(feature = "third-axis")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub z: Option<ZAxis>,
 }
 
 #[cfg(feature = "serde")]
@@ -130,8 +136,10 @@ crate::checked_serde::checked_deserialize!(
         homing: bool,
         home_x: HomingAxis,
         home_y: HomingAxis,
+        #[cfg(feature = "third-axis")]
+        z: Option<ZAxis>,
     },
-    |settings: &StepperPlotterSettings| settings.checked::<AllModes>().map(|_| ())
+    |settings: &StepperPlotterSettings| settings.can_be_driven()
 );
 
 impl Default for StepperPlotterSettings {
@@ -155,11 +163,23 @@ impl Default for StepperPlotterSettings {
             homing: false,
             home_x: HomingAxis::default(),
             home_y: HomingAxis::default(),
+            #[cfg(feature = "third-axis")]
+            z: None,
         }
     }
 }
 
 impl StepperPlotterSettings {
+    /// Whether some controller can drive such a machine.
+    #[cfg(feature = "serde")]
+    fn can_be_driven(&self) -> Result<(), SettingsError> {
+        #[cfg(feature = "third-axis")]
+        if self.z.is_some() {
+            return self.checked::<crate::planner::ThreeAxes>().map(|_| ());
+        }
+        self.checked::<AllModes>().map(|_| ())
+    }
+
     /// The motors, once they have been checked.
     pub(super) const fn cartesian(&self) -> Cartesian {
         Cartesian::of_checked(self.x_steps_per_mm, self.y_steps_per_mm)
@@ -194,6 +214,12 @@ impl StepperPlotterSettings {
         }
         if !M::ALL && (self.backlash.x_steps != 0 || self.backlash.y_steps != 0) {
             return Err(SettingsError::Planner(PlanError::Mode { quantity: "backlash" }));
+        }
+        #[cfg(feature = "third-axis")]
+        if let Some(z) = &self.z
+            && let Err(error) = z.check(M::Z, &self.planner)
+        {
+            return Err(SettingsError::Planner(error));
         }
         let limits = self.limits();
         if let Err(error) = limits.check::<M>() {
@@ -284,6 +310,10 @@ impl StepperPlotterSettings {
 
     /// By which words a G-code text lifts the pen.
     pub(super) fn convention(&self) -> PenConvention {
+        #[cfg(feature = "third-axis")]
+        if self.z.is_some_and(|z| z.pen.is_none()) && !self.laser {
+            return PenConvention::Motion;
+        }
         if self.laser { PenConvention::GRBL_LASER } else { self.pen }
     }
 }

@@ -52,6 +52,12 @@ pub struct Status {
     pub planned: u8,
     /// Where the pen is by the steps really made, mm.
     pub at: Point,
+    /// The height of a third axis by the steps really made, mm, if there is one.
+    #[cfg(feature = "third-axis")]
+    pub z_mm: Option<f64>,
+    /// Which limit switches of it are pressed.
+    #[cfg(feature = "third-axis")]
+    pub z_switches: crate::safety::ZSwitches,
     /// How fast it moves, mm/s.
     pub speed_mm_s: f32,
     /// Power of the laser, in 65535ths.

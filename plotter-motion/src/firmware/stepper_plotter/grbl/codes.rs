@@ -6,6 +6,7 @@ use crate::decimal_text::Thousandths;
 use crate::gcode::{Complaint, Position, Problem, Word};
 use crate::homing::HomingError;
 use crate::whole::is_whole;
+use core::fmt;
 
 /// What stands after `error:`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -145,6 +146,15 @@ impl Alarm {
     /// The emergency stop button. Grbl 1.1 has no number for it; this is that of its successor grblHAL.
     pub(super) const EMERGENCY: Self = Self(10);
 
+    /// As [`Alarm::of`].
+    #[cfg(feature = "third-axis")]
+    pub(super) const fn of_z(error: super::super::ZHomingError) -> Self {
+        match error {
+            super::super::ZHomingError::Stuck { .. } => Self(8),
+            _ => Self(9),
+        }
+    }
+
     /// 8: a switch did not open; 9: a switch was not found where it should be.
     pub(super) const fn of(error: HomingError) -> Self {
         match error {
@@ -154,7 +164,36 @@ impl Alarm {
     }
 }
 
-/// Both coordinates of a place or a way, mm.
-pub(super) fn coordinates(x: f64, y: f64) -> (Thousandths, Thousandths) {
-    (Thousandths::of(x), Thousandths::of(y))
+/// The coordinates of a place or a way, mm.
+pub(super) struct Coordinates {
+    x: Thousandths,
+    y: Thousandths,
+    #[cfg(feature = "third-axis")]
+    z: Thousandths,
+}
+
+impl Coordinates {
+    pub(super) fn of(x: f64, y: f64) -> Self {
+        Self {
+            x: Thousandths::of(x),
+            y: Thousandths::of(y),
+            #[cfg(feature = "third-axis")]
+            z: Thousandths::of(0.0),
+        }
+    }
+
+    /// With the third of a machine that has three.
+    #[cfg(feature = "third-axis")]
+    pub(super) fn with_z(self, z: Option<f64>) -> Self {
+        Self { z: Thousandths::of(z.unwrap_or(0.0)), ..self }
+    }
+}
+
+impl fmt::Display for Coordinates {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        #[cfg(feature = "third-axis")]
+        return write!(f, "{},{},{}", self.x, self.y, self.z);
+        #[cfg(not(feature = "third-axis"))]
+        write!(f, "{},{},0.000", self.x, self.y)
+    }
 }

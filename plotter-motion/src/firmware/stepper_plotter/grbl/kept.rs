@@ -100,8 +100,14 @@ impl<P: Pens> Grbl<P> {
         }
         if self.alarm.is_some() {
             let before = (self.interpreter, core::mem::replace(&mut self.mode, Mode::Check));
+            #[cfg(feature = "third-axis")]
+            let heights = self.heights.clone();
             let done = self.block(line, link);
             (self.interpreter, self.mode) = before;
+            #[cfg(feature = "third-axis")]
+            {
+                self.heights = heights;
+            }
             done?;
         } else {
             self.block(line, link)?;
@@ -122,6 +128,10 @@ impl<P: Pens> Grbl<P> {
         if all {
             kept.lines = StartupLines::default();
             self.interpreter.restore_origins();
+            #[cfg(feature = "third-axis")]
+            if let Some(heights) = self.heights.get_mut() {
+                heights.restore_origins();
+            }
         }
         send(link, Command::Restore);
         self.wait = Some(Wait::Restore);

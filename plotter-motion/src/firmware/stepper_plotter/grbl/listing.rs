@@ -3,7 +3,9 @@
 use super::super::output::Output;
 use super::super::settings::FULL_POWER;
 use super::super::{COMMANDS, Setting, StartupLines, StepperPlotterSettings};
-use super::codes::coordinates;
+use super::codes::Coordinates;
+#[cfg(feature = "third-axis")]
+use super::heights::Heights;
 use super::rx_buffer::RX_BYTES;
 use super::{MOST_COMMANDS, OUTPUT};
 use crate::decimal_text::{Plain, Thousandths, Whole};
@@ -27,6 +29,8 @@ pub(super) enum Listing {
 pub(super) struct About<'a> {
     pub(super) settings: &'a StepperPlotterSettings,
     pub(super) interpreter: &'a LineInterpreter,
+    #[cfg(feature = "third-axis")]
+    pub(super) heights: Option<&'a Heights>,
     pub(super) lines: Option<&'a StartupLines>,
     /// Whether settings can be restored.
     pub(super) restores: bool,
@@ -39,7 +43,7 @@ pub(super) const BLOCKS: usize = COMMANDS - MOST_COMMANDS;
 impl Listing {
     /// Writes one line of the listing. Says whether there was one left.
     pub(super) fn line(self, index: u8, about: &About<'_>, out: &mut Output<OUTPUT>) -> bool {
-        let &About { settings, interpreter, lines, restores } = about;
+        let &About { settings, interpreter, lines, restores, .. } = about;
         match self {
             Self::Settings => {
                 let Some((number, value, is_whole)) = setting(index, settings) else { return false };
@@ -72,21 +76,24 @@ impl Listing {
             Self::Offsets => match index {
                 0..SYSTEMS => {
                     let origin = interpreter.origin(index);
-                    let (x, y) = coordinates(origin.x, origin.y);
-                    out.line(format_args!("[G{}:{x},{y},0.000]", Whole(54 + u64::from(index))));
+                    let origin = Coordinates::of(origin.x, origin.y);
+                    #[cfg(feature = "third-axis")]
+                    let origin = origin.with_z(about.heights.map(|heights| heights.origin(index)));
+                    out.line(format_args!("[G{}:{origin}]", Whole(54 + u64::from(index))));
                 }
                 SYSTEMS | 7 => {
                     let home = interpreter.home_place(index == 7);
-                    let (x, y) = coordinates(home.x, home.y);
-                    out.line(format_args!(
-                        "[G{}:{x},{y},0.000]",
-                        Plain(if index == 7 { "30" } else { "28" })
-                    ));
+                    let home = Coordinates::of(home.x, home.y);
+                    #[cfg(feature = "third-axis")]
+                    let home = home.with_z(about.heights.map(|heights| heights.home_place(index == 7)));
+                    out.line(format_args!("[G{}:{home}]", Plain(if index == 7 { "30" } else { "28" })));
                 }
                 8 => {
                     let shift = interpreter.shift();
-                    let (x, y) = coordinates(shift.x, shift.y);
-                    out.line(format_args!("[G92:{x},{y},0.000]"));
+                    let shift = Coordinates::of(shift.x, shift.y);
+                    #[cfg(feature = "third-axis")]
+                    let shift = shift.with_z(about.heights.map(Heights::shift));
+                    out.line(format_args!("[G92:{shift}]"));
                 }
                 9 => {
                     out.line(format_args!("[TLO:{}]", Thousandths::of(interpreter.modes().length_mm)));
@@ -162,6 +169,13 @@ fn setting(index: u8, settings: &StepperPlotterSettings) -> Option<(u8, f64, boo
         101 => settings.y_steps_per_mm,
         110 | 111 => greater(planner.travel_speed_mm_s, planner.speed_mm_s) * 60.0,
         120 | 121 => *planner.clone().accel_of_motor(number == 121),
+        #[cfg(feature = "third-axis")]
+        102 | 112 | 122 | 132 if let Some(z) = settings.z => match number {
+            102 => z.steps_per_mm,
+            112 => z.speed_mm_s * 60.0,
+            122 => z.accel_mm_s2,
+            _ => z.travel_mm,
+        },
         _ => f64::from(whole),
     };
     Some((number, value, !matches!(number, 11 | 12 | 24 | 25 | 27 | 100..)))

@@ -2,6 +2,8 @@
 
 mod block;
 mod codes;
+#[cfg(feature = "third-axis")]
+mod heights;
 mod kept;
 mod line_buffer;
 mod listing;
@@ -85,6 +87,8 @@ pub struct Grbl<P: Pens = AnyPen> {
     jogs: bool,
     greeting: bool,
     kept: P::Kept<Kept>,
+    #[cfg(feature = "third-axis")]
+    heights: P::Kept<heights::Heights>,
     out: Output<OUTPUT>,
 }
 
@@ -116,6 +120,8 @@ impl<P: Pens> Grbl<P> {
             jogs: false,
             greeting: true,
             kept,
+            #[cfg(feature = "third-axis")]
+            heights: P::Kept::default(),
             out: Output::new(),
         }
     }
@@ -171,6 +177,10 @@ impl<P: Pens> Grbl<P> {
 
     pub(super) fn work(&mut self, status: &Status, link: &mut Link) {
         loop {
+            #[cfg(feature = "third-axis")]
+            if let Some(heights) = self.heights.get_mut() {
+                heights.look(status);
+            }
             self.gather();
             if self.out.room() < MOST_ANSWER
                 || !(self.tell(status, link) || self.start(link) || self.carry_on(status, link))
@@ -205,7 +215,14 @@ impl<P: Pens> Grbl<P> {
         } else if let Some((listing, index)) = self.listing {
             let restores = self.restores(status);
             let lines = self.kept.get().map(|kept| &kept.lines);
-            let about = About { settings: &self.settings, interpreter: &self.interpreter, lines, restores };
+            let about = About {
+                settings: &self.settings,
+                interpreter: &self.interpreter,
+                #[cfg(feature = "third-axis")]
+                heights: heights::told(&self.settings).and(self.heights.get()),
+                lines,
+                restores,
+            };
             if listing.line(index, &about, &mut self.out) {
                 self.listing = Some((listing, index.saturating_add(1)));
             } else {
@@ -270,6 +287,13 @@ impl<P: Pens> Grbl<P> {
     }
 
     fn take(&mut self, report: Report) {
+        #[cfg(feature = "third-axis")]
+        if let Some(heights) = self.heights.get_mut().filter(|_| report != Report::Done) {
+            heights.stand_still();
+            if let Report::Stopped { .. } = report {
+                heights.reset();
+            }
+        }
         match report {
             Report::Done => {
                 let waited = self.wait.take();
@@ -298,6 +322,15 @@ impl<P: Pens> Grbl<P> {
                     (Some(_), Err(_)) => self.error(Code::LOCKED),
                 }
             }
+            #[cfg(feature = "third-axis")]
+            Report::NotHomedZ { at, error } => {
+                self.interpreter.stand_at(at);
+                self.alarm(Alarm::of_z(error));
+                self.out.line(format_args!("[MSG:{error}]"));
+                if self.wait.take().is_some() {
+                    self.error(Code::LOCKED);
+                }
+            }
             Report::Jogged { at } => {
                 self.interpreter.stand_at(at);
                 self.stopped = true;
@@ -323,6 +356,8 @@ impl<P: Pens> Grbl<P> {
                 match why {
                     Stop::Emergency => self.alarm(Alarm::EMERGENCY),
                     Stop::Limit { .. } => self.alarm(Alarm::HARD_LIMIT),
+                    #[cfg(feature = "third-axis")]
+                    Stop::LimitZ { .. } => self.alarm(Alarm::HARD_LIMIT),
                     Stop::Reset { during: Activity::Home } => self.alarm(Alarm::HOMING_RESET),
                     Stop::Reset { during: Activity::Run | Activity::Hold { stands: false } } => {
                         self.alarm(Alarm::ABORT);
@@ -379,6 +414,10 @@ impl<P: Pens> Grbl<P> {
             b"RST=#" => {
                 self.out.line(format_args!("[MSG:Restoring defaults]"));
                 self.interpreter.restore_origins();
+                #[cfg(feature = "third-axis")]
+                if let Some(heights) = self.heights.get_mut() {
+                    heights.restore_origins();
+                }
                 self.begin_anew(status.at);
             }
             b"RST=$" | b"RST=*" if self.restores(status) => {
@@ -428,6 +467,11 @@ impl<P: Pens> Grbl<P> {
     fn begin_anew(&mut self, at: Point) {
         self.interpreter.reset();
         self.interpreter.stand_at(at);
+        #[cfg(feature = "third-axis")]
+        if let Some(heights) = self.heights.get_mut() {
+            heights.reset();
+            heights.stand_still();
+        }
         self.reports_to_offset = 0;
         self.greeting = true;
     }
@@ -440,7 +484,7 @@ impl<P: Pens> Grbl<P> {
 
     /// Sends a command that may come after a stop.
     fn command(&mut self, link: &mut Link, command: Command) {
-        self.jogs = matches!(command, Command::Jog { .. });
+        self.jogs = command.is_jog();
         if core::mem::take(&mut self.stopped) {
             send(link, Command::GoOn);
         }

@@ -1,10 +1,10 @@
 //! The answer to `?`.
 
 use super::super::{Activity, Link, Percents, Status, settings::FULL_POWER};
-use super::codes::coordinates;
+use super::codes::Coordinates;
 use super::listing::BLOCKS;
 use super::{Grbl, MOST_COMMANDS, Mode, Pens, REPORTS_WITHOUT_OFFSET};
-use crate::decimal_text::{Plain, Thousandths, Whole};
+use crate::decimal_text::{Plain, Whole};
 use core::fmt;
 
 impl<P: Pens> Grbl<P> {
@@ -22,7 +22,9 @@ impl<P: Pens> Grbl<P> {
             Activity::Hold { stands: false } => "Hold:1",
             Activity::Home => "Home",
         });
-        let (x, y) = coordinates(status.at.x, status.at.y);
+        let at = Coordinates::of(status.at.x, status.at.y);
+        #[cfg(feature = "third-axis")]
+        let at = at.with_z(status.z_mm);
         // As Grbl counts: blocks that are not over, of the number that it reports, even if there is room for
         // more.
         let queued = link.commands.room().saturating_sub(MOST_COMMANDS).min(BLOCKS);
@@ -36,11 +38,13 @@ impl<P: Pens> Grbl<P> {
         let pins = Pins {
             x: status.limits.x_min || status.limits.x_max,
             y: status.limits.y_min || status.limits.y_max,
+            #[cfg(feature = "third-axis")]
+            z: status.z_switches.lower || status.z_switches.upper,
         };
         let offset = self.offset();
         let overrides = self.overrides_told(status.percents, offset.0.is_some());
         self.out.line(format_args!(
-            "<{state}|MPos:{x},{y},0.000|Bf:{blocks},{bytes}|FS:{feed_mm_min},{power}{pins}{offset}{overrides}>"
+            "<{state}|MPos:{at}|Bf:{blocks},{bytes}|FS:{feed_mm_min},{power}{pins}{offset}{overrides}>"
         ));
     }
 
@@ -62,7 +66,11 @@ impl<P: Pens> Grbl<P> {
         }
         self.reports_to_offset = REPORTS_WITHOUT_OFFSET;
         let offset = self.interpreter.modes().offset;
-        Offset(Some(coordinates(offset.x, offset.y)))
+        let offset = Coordinates::of(offset.x, offset.y);
+        #[cfg(feature = "third-axis")]
+        let offset =
+            offset.with_z(self.told_heights().map(|heights| heights.offset(self.interpreter.modes().system)));
+        Offset(Some(offset))
     }
 }
 
@@ -82,6 +90,8 @@ impl fmt::Display for Told {
 struct Pins {
     x: bool,
     y: bool,
+    #[cfg(feature = "third-axis")]
+    z: bool,
 }
 
 impl fmt::Display for Pins {
@@ -91,15 +101,20 @@ impl fmt::Display for Pins {
             (true, false) => f.write_str("|Pn:X"),
             (false, true) => f.write_str("|Pn:Y"),
             (true, true) => f.write_str("|Pn:XY"),
+        }?;
+        #[cfg(feature = "third-axis")]
+        if self.z {
+            return f.write_str(if self.x || self.y { "Z" } else { "|Pn:Z" });
         }
+        Ok(())
     }
 }
 
 /// `|WCO:`.
-struct Offset(Option<(Thousandths, Thousandths)>);
+struct Offset(Option<Coordinates>);
 
 impl fmt::Display for Offset {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.map_or(Ok(()), |(x, y)| write!(f, "|WCO:{x},{y},0.000"))
+        self.0.as_ref().map_or(Ok(()), |offset| write!(f, "|WCO:{offset}"))
     }
 }

@@ -163,6 +163,11 @@ impl MDraw {
                 self.stand_at(at);
                 result.err().map(Refusal::Homing)
             }
+            #[cfg(feature = "third-axis")]
+            Report::NotHomedZ { at, error } => {
+                self.stand_at(at);
+                Some(Refusal::HomingZ(error))
+            }
             Report::Stopped { at, why } => {
                 self.stand_at(at);
                 self.stopped = true;

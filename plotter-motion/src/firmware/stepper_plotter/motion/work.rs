@@ -20,6 +20,8 @@ impl<M: Modes> Motion<M> {
     pub(super) fn give(&mut self, event: MotorEvent, link: &mut Link) -> Option<Pulse<'static>> {
         match event {
             MotorEvent::Step(step) => return self.pass(step, link),
+            #[cfg(feature = "third-axis")]
+            MotorEvent::StepZ(step) => return self.pass_z(step, link),
             // A gate that was stopped when the machine was made is noticed by what moves first.
             MotorEvent::Pen(_) if self.gate.is_stopped() => self.stop(Stop::Emergency, link),
             MotorEvent::Pen(pen) => {
@@ -56,6 +58,8 @@ impl<M: Modes> Motion<M> {
                 self.stop(Stop::Limit { axis, end }, link);
                 None
             }
+            #[cfg(feature = "third-axis")]
+            Err(Blocked::LimitZ { .. }) => None,
         }
     }
 
@@ -164,6 +168,10 @@ impl<M: Modes> Motion<M> {
 
     /// Plans what the queue has and the planner takes.
     pub(super) fn fill(&mut self, now: Duration, link: &mut Link) {
+        #[cfg(feature = "third-axis")]
+        if M::Z {
+            return self.fill_rising(now, link);
+        }
         while self.planner.has_room()
             && !self.cancelling
             && let Some(Command::Jog { to, speed_mm_s }) = link.commands.first()
@@ -187,11 +195,19 @@ impl<M: Modes> Motion<M> {
             debug_assert!(planned.is_ok(), "the receive side has looked at {op:?}: {planned:?}");
             self.taken(now);
         }
-        // What comes next waits for a standstill: nothing more is planned together with this.
+        self.end_what_waits(link);
+    }
+
+    /// What comes next waits for a standstill: nothing more is planned together with this.
+    pub(super) fn end_what_waits(&mut self, link: &Link) {
         let jogs = self.jogs;
         let waits = |next| match next {
             Command::Plot(_) => jogs,
             Command::Jog { .. } => !jogs,
+            #[cfg(feature = "third-axis")]
+            Command::ToZ(_) => jogs,
+            #[cfg(feature = "third-axis")]
+            Command::JogZ { .. } => !jogs,
             _ => true,
         };
         if self.unfinished && !self.cancelling && link.commands.first().is_some_and(waits) {
@@ -232,6 +248,8 @@ impl<M: Modes> Motion<M> {
                     self.settings.pen_settle
                 };
                 let run = HomingRun::new(now.saturating_add(settle));
+                #[cfg(feature = "third-axis")]
+                self.begin_homing_z();
                 self.state = State::Homing(run);
             }
             Command::Pause => self.hold(),
@@ -243,6 +261,8 @@ impl<M: Modes> Motion<M> {
                 let _ = link.reports.push(Report::Done);
             }
             Command::GoOn => {}
+            #[cfg(feature = "third-axis")]
+            Command::ToZ(_) | Command::JogZ { .. } => {}
             Command::Unlock => {
                 self.gate.reset();
             }
@@ -257,6 +277,13 @@ impl<M: Modes> Motion<M> {
 
     /// One turn of homing.
     pub(super) fn home(&mut self, now: Duration, drivers: Drivers, link: &mut Link) -> Option<Step<'static>> {
+        #[cfg(feature = "third-axis")]
+        if M::Z && self.homes_z() {
+            let step = self.home_z(now, drivers, link);
+            if step.is_some() || self.homes_z() || self.state == State::Ready {
+                return step;
+            }
+        }
         let State::Homing(run) = &mut self.state else { return None };
         let result = match run.next(&self.settings, self.gate.limits()) {
             Ok((at, _)) if !has_come(at, now) || drivers == Drivers::Busy => {
