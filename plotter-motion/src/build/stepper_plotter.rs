@@ -90,5 +90,6 @@ fn constant(settings: &StepperPlotterSettings) -> String {
         text =
             text.replace(&format!("{name}: {duration:?}"), &format!("{name}: Duration::from_nanos({nanos})"));
     }
-    text
+    // A firmware with two axes is built without the third, and has no such field.
+    text.replace(", z: None", "")
 }

@@ -124,7 +124,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     #[must_use]
     pub fn has_room(&self) -> bool {
         // Where z lifts the pen, that is a block more.
-        let most = Front::<M>::most_blocks(&self.limits.settings) + if M::Z { 1 } else { 0 };
+        let lifts = self.front.rise.get().is_some_and(|rise| rise.pen_mm.is_some());
+        let most = Front::<M>::most_blocks(&self.limits.settings) + usize::from(lifts);
         self.ring.room() >= most && !self.front.has_chords()
     }
 
