@@ -126,6 +126,9 @@
 //!   only looked at.
 //! - An arc in the plane of `G18` or `G19` is looked at as Grbl does, and is drawn as what it is seen from
 //!   above, a line to its end. `G43.1` adds to a height, until `G49`.
+//! - `$H` warns (`[MSG:Warning: …]`) of an axis that is not as long between its switches as at the homing before,
+//!   which a firmware may have kept ([`StepperPlotter::homed`]), and of one that is shorter than its side of the
+//!   area.
 //! - With `$22=1` a machine that is switched on is locked until `$H` or `$X`; without it `$H` is `error:5`.
 //!   `$n=value` changes what [`Setting`] lists, at rest: out of range it is `error:52` (grblHAL's), beyond
 //!   100,000 steps/s `error:12`, for what cannot be changed `error:3`, unless it says what is so already.

@@ -17,6 +17,7 @@ use super::{
     Signal, Status, StepperPlotterSettings, Stop, StoredSettings,
 };
 use crate::extremes::greatest;
+use crate::homing::Homed;
 use crate::kinematics::{Cartesian, Kinematics};
 use crate::planner::{AllModes, Keep as _, Modes};
 use crate::seconds::has_come;
@@ -41,6 +42,15 @@ pub struct Step<'gate> {
     pub pulse: Pulse<'gate>,
 }
 
+/// What homing has measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Measured {
+    homed: Option<Homed>,
+    off: Option<StepPoint>,
+    /// Its place has been known since the machine was switched on.
+    is_placed: bool,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum State {
     Ready,
@@ -62,6 +72,7 @@ pub struct Motion<M: Modes = AllModes> {
     play: M::Kept<Play>,
     /// What it was switched on with.
     built: M::Kept<StepperPlotterSettings>,
+    measured: M::Kept<Measured>,
     gate: SafetyGate,
     state: State,
     /// Steps really made.
@@ -146,6 +157,7 @@ impl<M: Modes> Motion<M> {
             steps,
             play,
             built,
+            measured: M::Kept::default(),
             gate,
             state: State::Ready,
             position: StepPoint::default(),
@@ -348,6 +360,26 @@ impl<M: Modes> Motion<M> {
     #[must_use]
     pub const fn lateness(&self) -> Lateness {
         self.lateness
+    }
+
+    /// What homing has measured last: none before, nor with [`ExactOnly`](crate::planner::ExactOnly).
+    #[must_use]
+    pub fn homed(&self) -> Option<Homed> {
+        self.measured.get()?.homed
+    }
+
+    /// Takes what an earlier homing has measured and a firmware has kept.
+    pub(super) fn set_homed(&mut self, homed: Homed) {
+        if let Some(measured) = self.measured.get_mut() {
+            measured.homed = Some(homed);
+        }
+    }
+
+    /// How many steps the carriage stood away from where it was believed to be, as the last homing has found:
+    /// what motors have lost since the one before. None until the machine has homed twice.
+    #[must_use]
+    pub fn off_steps(&self) -> Option<StepPoint> {
+        self.measured.get()?.off
     }
 
     /// Where the motors stand: steps really made, also those that take up play.

@@ -4,6 +4,7 @@ use super::{
     CheckedSettings, Drivers, Host, Lateness, Link, Motion, Receive, SettingsError, StartupLines, Status,
     Step, StepperPlotterSettings, StoredSettings,
 };
+use crate::homing::Homed;
 use crate::planner::{AllModes, Modes};
 use crate::{Axis, Direction, Point, SafetyGate, StepPoint, safety::Beam};
 use core::time::Duration;
@@ -186,6 +187,28 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
     #[must_use]
     pub fn startup_lines(&self) -> StartupLines {
         self.receive.startup_lines()
+    }
+
+    /// What homing has measured last, steps between the switches of each axis: to be kept by the firmware
+    /// ([`Homed::to_bytes`]). None before it has homed, nor with
+    /// [`ExactOnly`](crate::planner::ExactOnly).
+    #[must_use]
+    pub fn homed(&self) -> Option<Homed> {
+        self.motion.homed()
+    }
+
+    /// Takes what an earlier homing has measured and the firmware has kept: right after the controller is
+    /// made. Grbl's `$H` warns if the axes are no longer as long.
+    pub fn set_homed(&mut self, homed: Homed) {
+        self.motion.set_homed(homed);
+        self.receive.set_homed(homed);
+    }
+
+    /// How many steps the carriage stood away from where it was believed to be, as the last homing has found:
+    /// what motors have lost since the one before. None until the machine has homed twice.
+    #[must_use]
+    pub fn off_steps(&self) -> Option<StepPoint> {
+        self.motion.off_steps()
     }
 
     /// Takes the lines that a firmware has kept: right after the controller is made, before anything else.

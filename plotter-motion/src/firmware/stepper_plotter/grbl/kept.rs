@@ -9,6 +9,8 @@ use core::fmt::Write as _;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Kept {
     pub(super) lines: StartupLines,
+    /// What homing has measured last.
+    pub(super) homed: Option<crate::homing::Homed>,
     /// The settings that the controller was made with.
     built: StepperPlotterSettings,
     /// The start-up line to carry out next; from [`StartupLines::COUNT`] on there is none.
@@ -23,6 +25,7 @@ impl Default for Kept {
     fn default() -> Self {
         Self {
             lines: StartupLines::default(),
+            homed: None,
             built: StepperPlotterSettings::default(),
             next: StartupLines::COUNT,
             running: None,

@@ -4,6 +4,7 @@ mod block;
 mod codes;
 #[cfg(feature = "third-axis")]
 mod heights;
+mod homed;
 mod kept;
 mod line_buffer;
 mod listing;
@@ -309,7 +310,10 @@ impl<P: Pens> Grbl<P> {
             Report::Homed { at, result } => {
                 self.interpreter.stand_at(at);
                 match result {
-                    Ok(_) => self.alarm = None,
+                    Ok(homed) => {
+                        self.alarm = None;
+                        self.tell_homed(homed);
+                    }
                     Err(error) => {
                         self.alarm(Alarm::of(error));
                         self.out.line(format_args!("[MSG:{error}]"));

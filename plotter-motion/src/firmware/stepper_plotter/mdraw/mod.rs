@@ -96,6 +96,8 @@ impl MDraw {
     #[expect(clippy::unused_self, reason = "as the other dialect has it")]
     pub(super) const fn set_startup_lines(&mut self, _: &StartupLines) {}
 
+    pub(super) const fn set_homed(&mut self, _: crate::homing::Homed) {}
+
     /// The port has been opened anew, at `at`.
     pub(super) fn restart(&mut self, at: Point) {
         *self = Self::new(StepperPlotterSettings { stored: self.stored, ..self.settings });

@@ -297,7 +297,13 @@ impl<M: Modes> Motion<M> {
             }
             Err(result) => result,
         };
-        if result.is_ok() {
+        if let Ok(homed) = result {
+            if let Some(measured) = self.measured.get_mut() {
+                let StepPoint { x, y } = self.position;
+                let off = StepPoint::new(x.saturating_neg(), y.saturating_neg());
+                measured.off = measured.is_placed.then_some(off);
+                (measured.homed, measured.is_placed) = (Some(homed), true);
+            }
             self.position = StepPoint::default();
             #[cfg(feature = "step-ahead")]
             self.ahead.homed();
