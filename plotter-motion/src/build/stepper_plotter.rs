@@ -91,5 +91,5 @@ fn constant(settings: &StepperPlotterSettings) -> String {
             text.replace(&format!("{name}: {duration:?}"), &format!("{name}: Duration::from_nanos({nanos})"));
     }
     // A firmware with two axes is built without the third, and has no such field.
-    text.replace(", z: None", "")
+    text.replace(", z: None, second: None", "")
 }

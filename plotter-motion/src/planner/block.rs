@@ -235,7 +235,7 @@ impl Block {
             feed_mm_s: self.feed_mm_s,
             pen: self.pen,
             laser_power: self.power,
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             to_z_mm: None,
         }
     }

@@ -186,7 +186,7 @@ impl<M: Modes> Front<M> {
     }
 
     /// Gives out what was held back: what comes next ends at another height.
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     pub(super) fn before_rise<const N: usize>(
         &mut self,
         op: &PlotOp,
@@ -205,7 +205,7 @@ impl<M: Modes> Front<M> {
 
     /// Takes an operation that ends at another height: a line, an arc, or z alone where it names the place
     /// where the path has come to. It is given out as it is, whatever the way to follow a path.
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     pub(super) fn push_rising<const N: usize>(
         &mut self,
         op: PlotOp,
@@ -248,7 +248,7 @@ impl<M: Modes> Front<M> {
     }
 
     /// What is asked of an operation that rises: the square of its speed.
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     pub(super) fn checked_rising(
         op: &PlotOp,
         height_mm: f64,

@@ -6,7 +6,7 @@ use super::limits::{Limits, Shares, Wish};
 use super::modes::{AllModes, Keep as _, Modes};
 use super::ring::{Ring, narrow};
 use super::rise::Heights;
-#[cfg(feature = "third-axis")]
+#[cfg(feature = "third-motor")]
 use super::rise::ZLimits;
 use super::time_law::TimeLaw;
 use super::{Action, PlanError, PlannerSettings};
@@ -158,7 +158,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             return Err(PlanError::Full);
         }
         self.stale = true;
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         if M::Z {
             self.lift_for(&op)?;
         }
@@ -263,7 +263,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// [`PlanError::Full`] when there is no room for it.
     pub fn finish(&mut self) -> Result<(), PlanError> {
         self.rest()?;
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         if M::Z {
             self.lift_for(&PlotOp::Travel { to: self.position() })?;
         }
@@ -366,7 +366,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             Kind::Line | Kind::Jog | Kind::Arc | Kind::Parabola | Kind::Helix => {
                 #[allow(unused_mut, reason = "it has a height only with a third axis")]
                 let mut course = head.course();
-                #[cfg(feature = "third-axis")]
+                #[cfg(feature = "third-motor")]
                 if let Some(heights) = self.heights.get() {
                     course.to_z_mm = heights.first();
                 }
@@ -396,7 +396,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     }
 }
 
-#[cfg(feature = "third-axis")]
+#[cfg(feature = "third-motor")]
 impl<const N: usize, M: Modes> Planner<N, M> {
     /// What the third axis can do: nothing until this is told. Only with [`ThreeAxes`](super::ThreeAxes).
     ///

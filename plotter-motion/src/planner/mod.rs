@@ -37,11 +37,11 @@ pub use error::PlanError;
 pub use junction::junction_speed;
 pub use look_ahead::Planner;
 pub(crate) use modes::Keep;
-#[cfg(feature = "third-axis")]
+#[cfg(feature = "third-motor")]
 pub use modes::ThreeAxes;
 pub use modes::{AllModes, ExactOnly, ExactPen, Modes};
 pub(crate) use modes::{Here, Nowhere, Part};
 pub use phase::{Action, Course, Phase, Shape};
-#[cfg(feature = "third-axis")]
+#[cfg(feature = "third-motor")]
 pub use rise::ZLimits;
 pub use settings::{AccelLimit, PathMode, PlannerSettings};

@@ -45,7 +45,7 @@ pub struct ExactOnly;
 
 /// [`AllModes`] without S-curves, of a machine with a third axis: a tool that is raised and lowered by a motor
 /// of its own, along with the other two. See [`Planner::push_rising`](super::Planner::push_rising).
-#[cfg(feature = "third-axis")]
+#[cfg(feature = "third-motor")]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ThreeAxes;
 
@@ -62,7 +62,7 @@ impl Modes for AllModes {
     type Either<A: Part, B: Part> = Either<A, B>;
 }
 
-#[cfg(feature = "third-axis")]
+#[cfg(feature = "third-motor")]
 impl Modes for ThreeAxes {
     const ALL: bool = true;
     const LASER: bool = true;
@@ -91,7 +91,7 @@ impl Modes for ExactPen {
 mod sealed {
     pub trait Sealed: Clone + core::fmt::Debug + PartialEq {}
     impl Sealed for super::AllModes {}
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     impl Sealed for super::ThreeAxes {}
     impl Sealed for super::ExactOnly {}
     impl Sealed for super::ExactPen {}

@@ -48,7 +48,7 @@ pub struct Course {
     pub laser_power: u16,
     /// At which height it ends, mm; none of a machine with two axes. Along the course z changes evenly, and
     /// `length_mm` is the length in space.
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     pub to_z_mm: Option<f64>,
 }
 

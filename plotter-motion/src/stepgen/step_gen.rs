@@ -79,7 +79,7 @@ pub enum MotorEvent {
     /// A step of either motor or of both.
     Step(StepPair),
     /// A step of the third motor: 1 upwards, -1 downwards.
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     StepZ(i8),
     /// The pen is lowered or lifted.
     Pen(Pen),
@@ -199,7 +199,7 @@ struct ZSteps {
     tick: u64,
 }
 
-#[cfg(feature = "third-axis")]
+#[cfg(feature = "third-motor")]
 impl ZSteps {
     /// Goes to a height along a course of this length, mm with 32 bits of fraction.
     fn begin(&mut self, to_mm: f64, length: i64) {
@@ -395,7 +395,7 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
         }
         loop {
             let running = self.running.as_mut()?;
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             if M::Z
                 && let Some(z) = self.z.get_mut()
                 && let Some(at) = z.due.map(|due| due.at)
@@ -492,7 +492,7 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
     }
 
     fn late_step(&mut self) -> Option<TimedEvent> {
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         if M::Z
             && let Some(step) = self.z.get_mut().and_then(|z| z.step(self.now.tick))
         {
@@ -537,7 +537,7 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
         self.at = course.to;
         self.chord_from = 0;
         self.next_chord();
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         if let (Some(z), Some(to_mm)) = (self.z.get_mut(), course.to_z_mm) {
             z.begin(to_mm, super::slice::fixed(course.length_mm, super::slice::FRACTION_BITS));
         }
@@ -555,7 +555,7 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
     }
 }
 
-#[cfg(feature = "third-axis")]
+#[cfg(feature = "third-motor")]
 impl<K: Kinematics, M: Modes> StepGen<K, M> {
     /// The third motor has so many steps to the millimetre, and stands at `steps`. Only with
     /// [`ThreeAxes`](crate::planner::ThreeAxes).

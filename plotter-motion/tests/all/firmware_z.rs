@@ -3,12 +3,12 @@
 use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{
-    Dialect, Drivers, Receive, SettingsError, StepperPlotterSettings, ZAxis, ZHoming, ZPen,
+    Dialect, Drivers, Receive, SecondMotor, SettingsError, StepperPlotterSettings, ZAxis, ZHoming, ZPen,
 };
 use plotter_motion::gcode::PenConvention;
 use plotter_motion::kinematics::{Cartesian, MotorScale};
 use plotter_motion::planner::{AllModes, Modes, PathMode, PlanError, ThreeAxes, ZLimits};
-use plotter_motion::safety::ZSwitches;
+use plotter_motion::safety::EndSwitches;
 use plotter_motion::stepgen::{MotorEvent, StepGenSettings, TimedEvent};
 use plotter_motion::{
     Axis, Direction, LimitSwitches, Planner, PlannerSettings, PlotOp, Point, SafetyGate, StepGen,
@@ -226,6 +226,8 @@ struct Bench {
     /// Whether the upper switch of z is stuck, pressed or open.
     stuck: Option<bool>,
     lower: bool,
+    /// The second motor of y: where it is, and its switches are, in the first one's steps.
+    second: Option<(i32, [i32; 2])>,
     answers: String,
 }
 
@@ -250,6 +252,7 @@ impl Bench {
             at: [500, 500, 0],
             stuck: None,
             lower: false,
+            second: None,
             answers: String::new(),
         };
         let greeting = bench.ask("");
@@ -265,7 +268,11 @@ impl Bench {
             self.plotter.limit_switch(self.now, axis, Direction::Plus, upper);
         }
         let upper = self.stuck.unwrap_or(pressed(2).1);
-        self.plotter.z_switches(self.now, ZSwitches { lower: self.lower, upper });
+        self.plotter.z_switches(self.now, EndSwitches { lower: self.lower, upper });
+        if let Some((at, [lower, upper])) = self.second {
+            let switches = EndSwitches { lower: at <= lower, upper: at >= upper };
+            self.plotter.second_switches(self.now, switches);
+        }
     }
 
     fn settle(&mut self) {
@@ -273,6 +280,10 @@ impl Bench {
             let by = [step.pulse.x(), step.pulse.y(), step.pulse.z()];
             for (at, by) in self.at.iter_mut().zip(by) {
                 *at += i32::from(by);
+            }
+            if let Some((at, [lower, _])) = &mut self.second {
+                *at += i32::from(step.pulse.second(Axis::Y));
+                assert!(at >= lower, "{at} {lower}");
             }
             self.switch();
             // No motor is driven into its switch.
@@ -524,11 +535,92 @@ fn it_lifts_a_pen_at_a_standstill_of_the_others() {
     assert_eq!(bench.at[2], 1_600);
 }
 
+fn with_second(offset_steps: i32) -> StepperPlotterSettings {
+    let second = Some(SecondMotor { axis: Axis::Y, offset_steps, most_skew_steps: 400 });
+    StepperPlotterSettings { second, homing: true, z: None, ..settings() }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// However the gantry is racked, both motors come to their own switches, no farther, and stand as they
+    /// are to stand to each other from then on.
+    #[test]
+    fn two_motors_of_an_axis_are_made_square(
+        first in 0_i32..27_000,
+        racked in -400_i32..400,
+        lower in -20_i32..20,
+        offset in -50_i32..50,
+    ) {
+        let mut bench = Bench::new(with_second(offset));
+        bench.at[1] = first;
+        let at = (first + racked).max(lower);
+        bench.second = Some((at, [lower, LENGTHS[1] + 500]));
+        let answers = bench.ask("$H\n");
+        // The second went this much farther to its switch than the first.
+        let ahead = (at - lower) - first;
+        let (which, steps) = (if ahead < 0 { "first" } else { "second" }, ahead.abs());
+        if steps < 400 {
+            prop_assert_eq!(answers, format!("[MSG:Squared: the {which} motor was {steps} steps ahead]\r\nok\r\n"));
+            prop_assert_eq!(bench.plotter.skew_steps(), Some(ahead));
+            let apart = bench.second.unwrap().0 - bench.at[1];
+            prop_assert_eq!(apart, lower + offset);
+            // The place counts from where either switch was met last.
+            let origin = bench.at[1];
+            prop_assert!((88 - offset.abs()..=88 + offset.abs() + 20).contains(&origin), "{}", origin);
+            bench.ask("G0 X10 Y10\nG0 Y3\n");
+            prop_assert_eq!(bench.second.unwrap().0 - bench.at[1], lower + offset);
+            prop_assert_eq!(bench.at[1] - origin, 263);
+        }
+    }
+}
+
+#[test]
+fn a_gantry_that_cannot_be_made_square_is_not_bent() {
+    let cases = [
+        // The second motor does not turn, or its switch has no wire.
+        (
+            500,
+            [-10_000, 30_000],
+            "ALARM:9\r\n[MSG:axis y: the second motor did not come to its lower limit switch within 400 steps alone;",
+        ),
+        (
+            -4_000,
+            [-4_000, 30_000],
+            "ALARM:9\r\n[MSG:axis y: the first motor did not come to its lower limit switch within 400 steps alone;",
+        ),
+    ];
+    for (at, switches, told) in cases {
+        let mut bench = Bench::new(with_second(0));
+        bench.at[1] = 4_000;
+        bench.second = Some((at, switches));
+        let answers = bench.ask("$H\n");
+        assert!(answers.starts_with(told) && answers.ends_with("error:9\r\n"), "{answers}");
+        assert_eq!((bench.at[0], bench.plotter.skew_steps()), (500, None));
+    }
+}
+
+#[test]
+fn the_switch_of_a_second_motor_stops_the_machine() {
+    let mut bench = Bench::new(with_second(0));
+    bench.second = Some((500, [0, 2_000]));
+    assert_eq!(bench.ask("$X\n"), "[MSG:Caution: Unlocked]\r\nok\r\n");
+    assert_eq!(
+        bench.ask("G0 Y50\n"),
+        "ok\r\nALARM:1\r\n[MSG:axis y: stopped by its upper limit switch; home the machine]\r\n"
+    );
+    assert_eq!((bench.at[1], bench.second.unwrap().0), (2_000, 2_000));
+    assert!(bench.ask("?").contains("|Pn:Y"));
+    assert_eq!(bench.ask("$X\nG0 Y1\n"), "[MSG:Caution: Unlocked]\r\nok\r\nok\r\n");
+}
+
 #[test]
 fn a_controller_with_two_axes_refuses_a_third() {
     let gate = || SafetyGate::new(LimitSwitches::RELEASED, false);
     let refused = StepperPlotter::new(settings(), gate());
     assert_eq!(refused.err(), Some(SettingsError::Planner(PlanError::Mode { quantity: "z" })));
+    let refused = StepperPlotter::new(with_second(0), gate());
+    assert_eq!(refused.err(), Some(SettingsError::Planner(PlanError::Mode { quantity: "second" })));
     for (z, quantity) in [
         (ZAxis { travel_mm: 0.0, ..ZAxis::default() }, "z.travel_mm"),
         (ZAxis { speed_mm_s: f64::NAN, ..ZAxis::default() }, "z.speed_mm_s"),

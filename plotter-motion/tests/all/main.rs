@@ -29,7 +29,7 @@ mod firmware_grbl_table;
 mod firmware_grbl_waits;
 mod firmware_mdraw;
 mod firmware_two_tasks;
-#[cfg(feature = "third-axis")]
+#[cfg(feature = "third-motor")]
 mod firmware_z;
 mod gcode_interpreter;
 #[cfg(feature = "alloc")]

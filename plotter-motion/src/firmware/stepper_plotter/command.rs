@@ -25,10 +25,10 @@ pub enum Command {
     },
     /// The next [`Command::Plot`] that goes somewhere ends at this height of a third axis, mm, and z changes
     /// evenly on its way.
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     ToZ(f64),
     /// As [`Command::Jog`], to another height of a third axis.
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     JogZ {
         /// Where to, mm.
         to: Point,
@@ -69,7 +69,7 @@ pub enum Command {
 impl Command {
     /// Whether it moves by hand.
     pub(super) const fn is_jog(&self) -> bool {
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         if let Self::JogZ { .. } = self {
             return true;
         }
@@ -117,7 +117,7 @@ pub enum Stop {
         end: Direction,
     },
     /// A limit switch of the third axis came on the way to it.
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     LimitZ {
         /// At which of its ends.
         end: Direction,
@@ -138,7 +138,7 @@ impl fmt::Display for Stop {
                 let end = Plain(if *end == Direction::Minus { "lower" } else { "upper" });
                 write!(f, "axis {axis}: stopped by its {end} limit switch; home the machine")
             }
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             Self::LimitZ { end } => {
                 let end = Plain(if *end == Direction::Minus { "lower" } else { "upper" });
                 write!(f, "axis z: stopped by its {end} limit switch; home the machine")
@@ -162,12 +162,20 @@ pub enum Report {
         result: Result<Homed, HomingError>,
     },
     /// Homing gave up at the third axis; the others have not moved.
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     NotHomedZ {
         /// Where the pen is now, mm.
         at: Point,
         /// Why.
         error: super::ZHomingError,
+    },
+    /// Homing gave up where two motors are made square.
+    #[cfg(feature = "third-motor")]
+    NotSquared {
+        /// Where the pen is now, mm.
+        at: Point,
+        /// Why.
+        error: super::SquaringError,
     },
     /// A jog has been cancelled: the machine stands, and leaves out what was commanded until
     /// [`Command::GoOn`].

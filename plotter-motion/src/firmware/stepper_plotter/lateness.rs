@@ -19,7 +19,7 @@ pub enum Drivers {
 impl Drivers {
     /// Whether this waits for them.
     pub(super) fn keep_back(self, event: MotorEvent) -> bool {
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         if matches!(event, MotorEvent::StepZ(_)) {
             return self == Self::Busy;
         }

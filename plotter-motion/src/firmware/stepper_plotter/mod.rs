@@ -199,10 +199,12 @@ mod queue;
 mod receive;
 mod setting;
 mod settings;
+#[cfg(feature = "third-motor")]
+mod squaring;
 mod startup_lines;
 mod status;
 mod stored_bytes;
-#[cfg(feature = "third-axis")]
+#[cfg(feature = "third-motor")]
 mod z_axis;
 
 #[cfg(feature = "step-ahead")]
@@ -219,8 +221,10 @@ pub use queue::Queue;
 pub use receive::{Host, Receive};
 pub use setting::{Setting, SettingProblem};
 pub use settings::{CheckedSettings, Dialect, SettingsError, StepperPlotterSettings, StoredSettings};
+#[cfg(feature = "third-motor")]
+pub use squaring::{SecondMotor, SquaringError};
 pub use startup_lines::StartupLines;
 pub use status::{Activity, Percents, Status};
 pub use stored_bytes::StoredError;
-#[cfg(feature = "third-axis")]
+#[cfg(feature = "third-motor")]
 pub use z_axis::{ZAxis, ZHoming, ZHomingError, ZPen};

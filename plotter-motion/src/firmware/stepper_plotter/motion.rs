@@ -4,7 +4,7 @@
 mod ahead;
 mod by_hand;
 mod work;
-#[cfg(feature = "third-axis")]
+#[cfg(feature = "third-motor")]
 mod z;
 
 #[cfg(feature = "step-ahead")]
@@ -105,7 +105,7 @@ pub struct Motion<M: Modes = AllModes> {
     lateness: Lateness,
     #[cfg(feature = "step-ahead")]
     ahead: ahead::Ahead,
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     z: M::Rise<z::ZState>,
 }
 
@@ -148,7 +148,7 @@ impl<M: Modes> Motion<M> {
             *built = *settings;
         }
         #[cfg_attr(
-            not(feature = "third-axis"),
+            not(feature = "third-motor"),
             expect(unused_mut, reason = "nothing is told of a third axis")
         )]
         let mut motion = Self {
@@ -180,10 +180,10 @@ impl<M: Modes> Motion<M> {
             lateness: Lateness::default(),
             #[cfg(feature = "step-ahead")]
             ahead: ahead::Ahead::default(),
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             z: M::Rise::default(),
         };
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         motion.tell_z();
         motion
     }
@@ -319,7 +319,7 @@ impl<M: Modes> Motion<M> {
         if let Ok(planner) = Planner::with_modes(settings.limits()) {
             self.settings = settings;
             self.planner = planner;
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             self.tell_z();
         }
         self.percents = Percents::default();
@@ -416,10 +416,14 @@ impl<M: Modes> Motion<M> {
             activity,
             planned: u8::try_from(planned).unwrap_or(u8::MAX),
             at: self.position_mm(),
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             z_mm: self.z_mm(),
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             z_switches: self.gate.z_limits(),
+            #[cfg(feature = "third-motor")]
+            second_switches: self.gate.second_limits(),
+            #[cfg(feature = "third-motor")]
+            skew_steps: self.skew_steps(),
             speed_mm_s,
             laser: self.beam.power(),
             percents: self.percents,
@@ -479,7 +483,7 @@ impl<M: Modes> Motion<M> {
         self.planner.clear(at);
         darken(&mut self.planner);
         self.steps.clear(self.carriage());
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         self.tell_z();
         if let Some(play) = self.play.get_mut() {
             play.stopped();
@@ -527,7 +531,7 @@ fn step_gen<M: Modes>(settings: &StepperPlotterSettings) -> StepGen<Cartesian, M
     let pen_settle = match settings.dialect {
         Dialect::MDraw => Duration::ZERO,
         // A motor's steps are over when they are over.
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         Dialect::Grbl if settings.z.is_some() => Duration::ZERO,
         Dialect::Grbl => settings.pen_settle,
     };

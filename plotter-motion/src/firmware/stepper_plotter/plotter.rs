@@ -117,21 +117,37 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
     }
 
     /// Takes the state of the limit switches of a third axis.
-    #[cfg(feature = "third-axis")]
-    pub fn z_switches(&mut self, now: Duration, switches: crate::safety::ZSwitches) {
+    #[cfg(feature = "third-motor")]
+    pub fn z_switches(&mut self, now: Duration, switches: crate::safety::EndSwitches) {
         self.motion.z_switches(switches);
         self.work(now);
     }
 
+    /// Takes the state of the limit switches of the second motor of an axis. Those that
+    /// [`limit_switch`](Self::limit_switch) tells of this axis are the first motor's.
+    #[cfg(feature = "third-motor")]
+    pub fn second_switches(&mut self, now: Duration, switches: crate::safety::EndSwitches) {
+        self.motion.second_switches(switches);
+        self.work(now);
+    }
+
+    /// How many steps farther than the first the second motor of an axis went when both were made square last:
+    /// by how much the gantry was racked.
+    #[cfg(feature = "third-motor")]
+    #[must_use]
+    pub fn skew_steps(&self) -> Option<i32> {
+        self.motion.skew_steps()
+    }
+
     /// The height of a third axis by the steps really made, mm; none of a machine with two.
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     #[must_use]
     pub fn z_mm(&self) -> Option<f64> {
         self.motion.z_mm()
     }
 
     /// By how many steps the third axis stood higher than was believed, as its last homing has found.
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     #[must_use]
     pub fn z_off_steps(&self) -> Option<i32> {
         self.motion.z_off_steps()

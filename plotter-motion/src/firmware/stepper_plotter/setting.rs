@@ -84,7 +84,7 @@ impl Setting {
             110 | 111 => 0.1..=600_000.0,
             120 | 121 => 1.0..=1e6,
             130 | 131 => SIDES_MM,
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             102 | 112 | 122 | 132 if settings.z.is_some() => match number {
                 102 => 0.01..=10_000.0,
                 112 => 0.1..=600_000.0,
@@ -107,7 +107,7 @@ impl Setting {
         if speed_mm_s * steps_per_mm > MOST_HZ || homing_hz > 100_000 {
             return Err(SettingProblem::StepRate);
         }
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         if let Some(z) = settings.z {
             if single(z.speed_mm_s * z.steps_per_mm) > MOST_HZ {
                 return Err(SettingProblem::StepRate);
@@ -156,7 +156,7 @@ impl Setting {
             120 | 121 => *settings.planner.accel_of_motor(number == 121) = value,
             130 => settings.stored.width_mm = side_mm(),
             131 => settings.stored.height_mm = side_mm(),
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             102 | 112 | 122 | 132 => {
                 if let Some(z) = &mut settings.z {
                     match number {

@@ -1,7 +1,7 @@
 //! [`StepperPlotterSettings`]: what the controller has to know of its machine.
 
-#[cfg(feature = "third-axis")]
-use super::ZAxis;
+#[cfg(feature = "third-motor")]
+use super::{SecondMotor, ZAxis};
 use crate::gcode::PenConvention;
 use crate::kinematics::{Backlash, Cartesian, MotorScale, ScaleError};
 use crate::planner::{AllModes, Modes};
@@ -115,9 +115,13 @@ pub struct StepperPlotterSettings {
     /// How y is homed.
     pub home_y: HomingAxis,
     /// A third axis. It takes [`ThreeAxes`](crate::planner::ThreeAxes).
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub z: Option<ZAxis>,
+    /// A second motor of an axis. It takes [`ThreeAxes`](crate::planner::ThreeAxes).
+    #[cfg(feature = "third-motor")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub second: Option<SecondMotor>,
 }
 
 #[cfg(feature = "serde")]
@@ -136,8 +140,10 @@ crate::checked_serde::checked_deserialize!(
         homing: bool,
         home_x: HomingAxis,
         home_y: HomingAxis,
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         z: Option<ZAxis>,
+        #[cfg(feature = "third-motor")]
+        second: Option<SecondMotor>,
     },
     |settings: &StepperPlotterSettings| settings.can_be_driven()
 );
@@ -163,8 +169,10 @@ impl Default for StepperPlotterSettings {
             homing: false,
             home_x: HomingAxis::default(),
             home_y: HomingAxis::default(),
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             z: None,
+            #[cfg(feature = "third-motor")]
+            second: None,
         }
     }
 }
@@ -173,8 +181,8 @@ impl StepperPlotterSettings {
     /// Whether some controller can drive such a machine.
     #[cfg(feature = "serde")]
     fn can_be_driven(&self) -> Result<(), SettingsError> {
-        #[cfg(feature = "third-axis")]
-        if self.z.is_some() {
+        #[cfg(feature = "third-motor")]
+        if self.z.is_some() || self.second.is_some() {
             return self.checked::<crate::planner::ThreeAxes>().map(|_| ());
         }
         self.checked::<AllModes>().map(|_| ())
@@ -215,11 +223,15 @@ impl StepperPlotterSettings {
         if !M::ALL && (self.backlash.x_steps != 0 || self.backlash.y_steps != 0) {
             return Err(SettingsError::Planner(PlanError::Mode { quantity: "backlash" }));
         }
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         if let Some(z) = &self.z
             && let Err(error) = z.check(M::Z, &self.planner)
         {
             return Err(SettingsError::Planner(error));
+        }
+        #[cfg(feature = "third-motor")]
+        if self.second.is_some() && !M::Z {
+            return Err(SettingsError::Planner(PlanError::Mode { quantity: "second" }));
         }
         let limits = self.limits();
         if let Err(error) = limits.check::<M>() {
@@ -310,7 +322,7 @@ impl StepperPlotterSettings {
 
     /// By which words a G-code text lifts the pen.
     pub(super) fn convention(&self) -> PenConvention {
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         if self.z.is_some_and(|z| z.pen.is_none()) && !self.laser {
             return PenConvention::Motion;
         }

@@ -2,7 +2,7 @@
 
 use crate::decimal_text::Whole;
 use crate::planner::{PlanError, ZLimits};
-use crate::safety::ZSwitches;
+use crate::safety::EndSwitches;
 use crate::{Direction, PlannerSettings};
 use core::fmt;
 
@@ -219,7 +219,7 @@ impl ZHomingProgress {
     pub(super) fn update(
         &mut self,
         settings: &ZHoming,
-        switches: ZSwitches,
+        switches: EndSwitches,
     ) -> Result<ZHomingStatus, ZHomingError> {
         let pull_off_steps = settings.pull_off_steps.max(1);
         let (start_hz, slow_hz) = (settings.start_hz.max(1), settings.slow_hz.max(1));
@@ -271,7 +271,7 @@ impl ZHomingProgress {
     }
 
     /// On the way up a lower switch opens soon, and then stays open.
-    fn leave_lower(&mut self, settings: &ZHoming, switches: ZSwitches) -> Result<(), ZHomingError> {
+    fn leave_lower(&mut self, settings: &ZHoming, switches: EndSwitches) -> Result<(), ZHomingError> {
         if !switches.lower {
             self.opened = self.opened.or(Some(self.taken));
         } else if self.opened.is_some_and(|opened| opened == 0) || self.taken >= settings.release_steps {
@@ -281,7 +281,7 @@ impl ZHomingProgress {
     }
 
     /// On the way down the upper switch opens soon; a contact may bounce.
-    fn leave_upper(&mut self, settings: &ZHoming, switches: ZSwitches) -> Result<(), ZHomingError> {
+    fn leave_upper(&mut self, settings: &ZHoming, switches: EndSwitches) -> Result<(), ZHomingError> {
         if !switches.upper {
             self.opened = self.opened.or(Some(self.taken));
         } else if self.taken >= settings.release_steps {

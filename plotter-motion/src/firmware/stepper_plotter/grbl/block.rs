@@ -10,7 +10,7 @@ use crate::Point;
 use crate::decimal::Decimal;
 use crate::gcode::{Block, Modes, Outcomes, SYSTEMS, Word, Words};
 use crate::geom::Vec2Single;
-#[cfg(feature = "third-axis")]
+#[cfg(feature = "third-motor")]
 use crate::planner::Keep as _;
 
 /// Least feed, mm/s: a lower one is raised to it. Chosen so that a step of 0.01 mm still takes no more than
@@ -28,12 +28,12 @@ impl<P: Pens> Grbl<P> {
         let known = P::read(&self.settings, |options| options.words);
         let Some(block) = read(text, known)? else { return Ok(()) };
         let before = self.interpreter;
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         let heights = self.heights.clone();
         let done = self.carry_out(&block, link);
         if done.is_err() {
             self.interpreter = before;
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             {
                 self.heights = heights;
             }
@@ -57,9 +57,9 @@ impl<P: Pens> Grbl<P> {
             return Err(Code::NO_FEED);
         }
         let (to, feed_mm_s) = self.interpreter.travel(&block)?;
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         let most = self.most();
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         if let Some(z) = self.z_axis()
             && let Some(heights) = self.heights.get_mut()
             && let Some(to_z_mm) = heights.jog_target(&block, &self.interpreter.modes())
@@ -134,15 +134,15 @@ impl<P: Pens> Grbl<P> {
             self.reports_to_offset = 0; // the next report tells it
         }
         let moves = outcomes.iter().flatten().any(|op| op.target().is_some());
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         let mut targets = self.targets(block, &before, &modes)?;
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         let moves = moves || targets.is_any();
         let (mut has_axis, mut dwells, mut ends, mut asks_to_move) = (false, false, false, false);
         for word in block.words() {
             match (word.letter, word.tenths()) {
                 (b'X' | b'Y', _) => has_axis = true,
-                #[cfg(feature = "third-axis")]
+                #[cfg(feature = "third-motor")]
                 (b'Z', _) if targets.is_any() => has_axis = true,
                 (b'G', Some(10 | 20 | 30)) => asks_to_move = true,
                 (b'G', Some(40)) => dwells = true,
@@ -158,7 +158,7 @@ impl<P: Pens> Grbl<P> {
         }
         let most = self.most();
         let mut at = before.position;
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         if !self.reaches(&targets) {
             return self.leaves_area(before.position, link);
         }
@@ -174,11 +174,11 @@ impl<P: Pens> Grbl<P> {
             }
             return Ok(());
         }
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         let mut left = outcomes.iter().flatten().filter(|op| op.target().is_some()).count();
         while let Some(op) = outcomes.take() {
             let Ok(mut op) = op else { continue };
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             if op.target().is_some() {
                 self.send_height(&mut targets, left, link);
                 left -= 1;
@@ -190,7 +190,7 @@ impl<P: Pens> Grbl<P> {
             }
             self.command(link, Command::Plot(op));
         }
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         self.send_z_alone(targets, &modes, link);
         if pauses {
             self.command(link, Command::Pause);

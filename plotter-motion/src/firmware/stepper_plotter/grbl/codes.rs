@@ -147,10 +147,19 @@ impl Alarm {
     pub(super) const EMERGENCY: Self = Self(10);
 
     /// As [`Alarm::of`].
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     pub(super) const fn of_z(error: super::super::ZHomingError) -> Self {
         match error {
             super::super::ZHomingError::Stuck { .. } => Self(8),
+            _ => Self(9),
+        }
+    }
+
+    /// As [`Alarm::of`].
+    #[cfg(feature = "third-motor")]
+    pub(super) const fn of_squaring(error: super::super::SquaringError) -> Self {
+        match error {
+            super::super::SquaringError::Stuck { .. } => Self(8),
             _ => Self(9),
         }
     }
@@ -168,7 +177,7 @@ impl Alarm {
 pub(super) struct Coordinates {
     x: Thousandths,
     y: Thousandths,
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     z: Thousandths,
 }
 
@@ -177,13 +186,13 @@ impl Coordinates {
         Self {
             x: Thousandths::of(x),
             y: Thousandths::of(y),
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             z: Thousandths::of(0.0),
         }
     }
 
     /// With the third of a machine that has three.
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     pub(super) fn with_z(self, z: Option<f64>) -> Self {
         Self { z: Thousandths::of(z.unwrap_or(0.0)), ..self }
     }
@@ -191,9 +200,9 @@ impl Coordinates {
 
 impl fmt::Display for Coordinates {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         return write!(f, "{},{},{}", self.x, self.y, self.z);
-        #[cfg(not(feature = "third-axis"))]
+        #[cfg(not(feature = "third-motor"))]
         write!(f, "{},{},0.000", self.x, self.y)
     }
 }

@@ -20,6 +20,16 @@ impl<P: Pens> Grbl<P> {
         }
     }
 
+    /// Tells by how much two motors of an axis were out of square.
+    #[cfg(feature = "third-motor")]
+    pub(super) fn tell_skew(&mut self, steps: i32) {
+        self.out.line(format_args!(
+            "[MSG:Squared: the {} motor was {} steps ahead]",
+            Plain(if steps < 0 { "first" } else { "second" }),
+            Whole(steps.unsigned_abs().into())
+        ));
+    }
+
     /// Warns of an axis that is not as long as it was, or shorter than its side of the area.
     pub(super) fn tell_homed(&mut self, homed: Homed) {
         let Some(kept) = self.kept.get_mut() else { return };

@@ -103,11 +103,11 @@ impl<P: Pens> Grbl<P> {
         }
         if self.alarm.is_some() {
             let before = (self.interpreter, core::mem::replace(&mut self.mode, Mode::Check));
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             let heights = self.heights.clone();
             let done = self.block(line, link);
             (self.interpreter, self.mode) = before;
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             {
                 self.heights = heights;
             }
@@ -131,7 +131,7 @@ impl<P: Pens> Grbl<P> {
         if all {
             kept.lines = StartupLines::default();
             self.interpreter.restore_origins();
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             if let Some(heights) = self.heights.get_mut() {
                 heights.restore_origins();
             }

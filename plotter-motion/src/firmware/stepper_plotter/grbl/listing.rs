@@ -4,7 +4,7 @@ use super::super::output::Output;
 use super::super::settings::FULL_POWER;
 use super::super::{COMMANDS, Setting, StartupLines, StepperPlotterSettings};
 use super::codes::Coordinates;
-#[cfg(feature = "third-axis")]
+#[cfg(feature = "third-motor")]
 use super::heights::Heights;
 use super::rx_buffer::RX_BYTES;
 use super::{MOST_COMMANDS, OUTPUT};
@@ -29,7 +29,7 @@ pub(super) enum Listing {
 pub(super) struct About<'a> {
     pub(super) settings: &'a StepperPlotterSettings,
     pub(super) interpreter: &'a LineInterpreter,
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     pub(super) heights: Option<&'a Heights>,
     pub(super) lines: Option<&'a StartupLines>,
     /// Whether settings can be restored.
@@ -77,21 +77,21 @@ impl Listing {
                 0..SYSTEMS => {
                     let origin = interpreter.origin(index);
                     let origin = Coordinates::of(origin.x, origin.y);
-                    #[cfg(feature = "third-axis")]
+                    #[cfg(feature = "third-motor")]
                     let origin = origin.with_z(about.heights.map(|heights| heights.origin(index)));
                     out.line(format_args!("[G{}:{origin}]", Whole(54 + u64::from(index))));
                 }
                 SYSTEMS | 7 => {
                     let home = interpreter.home_place(index == 7);
                     let home = Coordinates::of(home.x, home.y);
-                    #[cfg(feature = "third-axis")]
+                    #[cfg(feature = "third-motor")]
                     let home = home.with_z(about.heights.map(|heights| heights.home_place(index == 7)));
                     out.line(format_args!("[G{}:{home}]", Plain(if index == 7 { "30" } else { "28" })));
                 }
                 8 => {
                     let shift = interpreter.shift();
                     let shift = Coordinates::of(shift.x, shift.y);
-                    #[cfg(feature = "third-axis")]
+                    #[cfg(feature = "third-motor")]
                     let shift = shift.with_z(about.heights.map(Heights::shift));
                     out.line(format_args!("[G92:{shift}]"));
                 }
@@ -169,7 +169,7 @@ fn setting(index: u8, settings: &StepperPlotterSettings) -> Option<(u8, f64, boo
         101 => settings.y_steps_per_mm,
         110 | 111 => greater(planner.travel_speed_mm_s, planner.speed_mm_s) * 60.0,
         120 | 121 => *planner.clone().accel_of_motor(number == 121),
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         102 | 112 | 122 | 132 if let Some(z) = settings.z => match number {
             102 => z.steps_per_mm,
             112 => z.speed_mm_s * 60.0,

@@ -2,7 +2,7 @@
 
 mod block;
 mod codes;
-#[cfg(feature = "third-axis")]
+#[cfg(feature = "third-motor")]
 mod heights;
 mod homed;
 mod kept;
@@ -22,6 +22,8 @@ use crate::gcode::LineInterpreter;
 use crate::planner::Keep as _;
 use crate::{PlotOp, Point};
 use codes::{Alarm, Code};
+#[cfg(feature = "third-motor")]
+use core::fmt;
 use core::marker::PhantomData;
 use kept::Kept;
 use line_buffer::LineBuffer;
@@ -88,7 +90,7 @@ pub struct Grbl<P: Pens = AnyPen> {
     jogs: bool,
     greeting: bool,
     kept: P::Kept<Kept>,
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     heights: P::Kept<heights::Heights>,
     out: Output<OUTPUT>,
 }
@@ -121,7 +123,7 @@ impl<P: Pens> Grbl<P> {
             jogs: false,
             greeting: true,
             kept,
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             heights: P::Kept::default(),
             out: Output::new(),
         }
@@ -178,7 +180,7 @@ impl<P: Pens> Grbl<P> {
 
     pub(super) fn work(&mut self, status: &Status, link: &mut Link) {
         loop {
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             if let Some(heights) = self.heights.get_mut() {
                 heights.look(status);
             }
@@ -210,6 +212,10 @@ impl<P: Pens> Grbl<P> {
         if core::mem::take(&mut self.greeting) {
             self.greet();
         } else if let Some(report) = link.reports.pop() {
+            #[cfg(feature = "third-motor")]
+            if let (Report::Homed { result: Ok(_), .. }, Some(steps)) = (report, status.skew_steps) {
+                self.tell_skew(steps);
+            }
             self.take(report);
         } else if core::mem::take(&mut self.status_wanted) {
             self.tell_status(status, link);
@@ -219,7 +225,7 @@ impl<P: Pens> Grbl<P> {
             let about = About {
                 settings: &self.settings,
                 interpreter: &self.interpreter,
-                #[cfg(feature = "third-axis")]
+                #[cfg(feature = "third-motor")]
                 heights: heights::told(&self.settings).and(self.heights.get()),
                 lines,
                 restores,
@@ -288,7 +294,7 @@ impl<P: Pens> Grbl<P> {
     }
 
     fn take(&mut self, report: Report) {
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         if let Some(heights) = self.heights.get_mut().filter(|_| report != Report::Done) {
             heights.stand_still();
             if let Report::Stopped { .. } = report {
@@ -326,14 +332,13 @@ impl<P: Pens> Grbl<P> {
                     (Some(_), Err(_)) => self.error(Code::LOCKED),
                 }
             }
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             Report::NotHomedZ { at, error } => {
-                self.interpreter.stand_at(at);
-                self.alarm(Alarm::of_z(error));
-                self.out.line(format_args!("[MSG:{error}]"));
-                if self.wait.take().is_some() {
-                    self.error(Code::LOCKED);
-                }
+                self.give_up_homing(at, Alarm::of_z(error), format_args!("{error}"));
+            }
+            #[cfg(feature = "third-motor")]
+            Report::NotSquared { at, error } => {
+                self.give_up_homing(at, Alarm::of_squaring(error), format_args!("{error}"));
             }
             Report::Jogged { at } => {
                 self.interpreter.stand_at(at);
@@ -360,7 +365,7 @@ impl<P: Pens> Grbl<P> {
                 match why {
                     Stop::Emergency => self.alarm(Alarm::EMERGENCY),
                     Stop::Limit { .. } => self.alarm(Alarm::HARD_LIMIT),
-                    #[cfg(feature = "third-axis")]
+                    #[cfg(feature = "third-motor")]
                     Stop::LimitZ { .. } => self.alarm(Alarm::HARD_LIMIT),
                     Stop::Reset { during: Activity::Home } => self.alarm(Alarm::HOMING_RESET),
                     Stop::Reset { during: Activity::Run | Activity::Hold { stands: false } } => {
@@ -377,6 +382,16 @@ impl<P: Pens> Grbl<P> {
                     self.answer(Err(Code::LOCKED));
                 }
             }
+        }
+    }
+
+    #[cfg(feature = "third-motor")]
+    fn give_up_homing(&mut self, at: Point, alarm: Alarm, why: fmt::Arguments<'_>) {
+        self.interpreter.stand_at(at);
+        self.alarm(alarm);
+        self.out.line(format_args!("[MSG:{why}]"));
+        if self.wait.take().is_some() {
+            self.error(Code::LOCKED);
         }
     }
 
@@ -418,7 +433,7 @@ impl<P: Pens> Grbl<P> {
             b"RST=#" => {
                 self.out.line(format_args!("[MSG:Restoring defaults]"));
                 self.interpreter.restore_origins();
-                #[cfg(feature = "third-axis")]
+                #[cfg(feature = "third-motor")]
                 if let Some(heights) = self.heights.get_mut() {
                     heights.restore_origins();
                 }
@@ -471,7 +486,7 @@ impl<P: Pens> Grbl<P> {
     fn begin_anew(&mut self, at: Point) {
         self.interpreter.reset();
         self.interpreter.stand_at(at);
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         if let Some(heights) = self.heights.get_mut() {
             heights.reset();
             heights.stand_still();

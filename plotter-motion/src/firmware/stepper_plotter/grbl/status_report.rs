@@ -4,6 +4,8 @@ use super::super::{Activity, Link, Percents, Status, settings::FULL_POWER};
 use super::codes::Coordinates;
 use super::listing::BLOCKS;
 use super::{Grbl, MOST_COMMANDS, Mode, Pens, REPORTS_WITHOUT_OFFSET};
+#[cfg(feature = "third-motor")]
+use crate::Axis;
 use crate::decimal_text::{Plain, Whole};
 use core::fmt;
 
@@ -23,7 +25,7 @@ impl<P: Pens> Grbl<P> {
             Activity::Home => "Home",
         });
         let at = Coordinates::of(status.at.x, status.at.y);
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         let at = at.with_z(status.z_mm);
         // As Grbl counts: blocks that are not over, of the number that it reports, even if there is room for
         // more.
@@ -35,10 +37,17 @@ impl<P: Pens> Grbl<P> {
         let power =
             (u32::from(status.laser) * u32::from(FULL_POWER) + u32::from(u16::MAX / 2)) / u32::from(u16::MAX);
         let power = Whole(power.into());
+        #[cfg(feature = "third-motor")]
+        let second = {
+            let is_pressed = status.second_switches.lower || status.second_switches.upper;
+            self.settings.second.filter(|_| is_pressed).map(|second| second.axis)
+        };
         let pins = Pins {
             x: status.limits.x_min || status.limits.x_max,
             y: status.limits.y_min || status.limits.y_max,
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
+            second,
+            #[cfg(feature = "third-motor")]
             z: status.z_switches.lower || status.z_switches.upper,
         };
         let offset = self.offset();
@@ -67,7 +76,7 @@ impl<P: Pens> Grbl<P> {
         self.reports_to_offset = REPORTS_WITHOUT_OFFSET;
         let offset = self.interpreter.modes().offset;
         let offset = Coordinates::of(offset.x, offset.y);
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         let offset =
             offset.with_z(self.told_heights().map(|heights| heights.offset(self.interpreter.modes().system)));
         Offset(Some(offset))
@@ -90,21 +99,26 @@ impl fmt::Display for Told {
 struct Pins {
     x: bool,
     y: bool,
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
+    second: Option<Axis>,
+    #[cfg(feature = "third-motor")]
     z: bool,
 }
 
 impl fmt::Display for Pins {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (self.x, self.y) {
+        let (x, y) = (self.x, self.y);
+        #[cfg(feature = "third-motor")]
+        let (x, y) = (x || self.second == Some(Axis::X), y || self.second == Some(Axis::Y));
+        match (x, y) {
             (false, false) => Ok(()),
             (true, false) => f.write_str("|Pn:X"),
             (false, true) => f.write_str("|Pn:Y"),
             (true, true) => f.write_str("|Pn:XY"),
         }?;
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         if self.z {
-            return f.write_str(if self.x || self.y { "Z" } else { "|Pn:Z" });
+            return f.write_str(if x || y { "Z" } else { "|Pn:Z" });
         }
         Ok(())
     }

@@ -165,10 +165,15 @@ impl MDraw {
                 self.stand_at(at);
                 result.err().map(Refusal::Homing)
             }
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             Report::NotHomedZ { at, error } => {
                 self.stand_at(at);
                 Some(Refusal::HomingZ(error))
+            }
+            #[cfg(feature = "third-motor")]
+            Report::NotSquared { at, error } => {
+                self.stand_at(at);
+                Some(Refusal::Squaring(error))
             }
             Report::Stopped { at, why } => {
                 self.stand_at(at);

@@ -27,8 +27,10 @@ pub(super) enum Refusal {
     },
     Stopped(Stop),
     Homing(HomingError),
-    #[cfg(feature = "third-axis")]
+    #[cfg(feature = "third-motor")]
     HomingZ(super::super::ZHomingError),
+    #[cfg(feature = "third-motor")]
+    Squaring(super::super::SquaringError),
 }
 
 impl fmt::Display for Refusal {
@@ -48,8 +50,10 @@ impl fmt::Display for Refusal {
             }
             Self::Stopped(stop) => stop.fmt(f),
             Self::Homing(error) => error.fmt(f),
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             Self::HomingZ(error) => error.fmt(f),
+            #[cfg(feature = "third-motor")]
+            Self::Squaring(error) => error.fmt(f),
         }
     }
 }

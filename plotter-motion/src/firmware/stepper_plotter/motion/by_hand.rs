@@ -70,7 +70,7 @@ impl<M: Modes> Motion<M> {
             play.begin_anew(&settings);
         }
         self.planner.clear(self.position_mm());
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         self.tell_z();
         darken(&mut self.planner);
         self.override_speeds();

@@ -20,7 +20,7 @@ impl<M: Modes> Motion<M> {
     pub(super) fn give(&mut self, event: MotorEvent, link: &mut Link) -> Option<Pulse<'static>> {
         match event {
             MotorEvent::Step(step) => return self.pass(step, link),
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             MotorEvent::StepZ(step) => return self.pass_z(step, link),
             // A gate that was stopped when the machine was made is noticed by what moves first.
             MotorEvent::Pen(_) if self.gate.is_stopped() => self.stop(Stop::Emergency, link),
@@ -41,7 +41,18 @@ impl<M: Modes> Motion<M> {
 
     /// The one way of a step to the motors.
     pub(super) fn pass(&mut self, step: StepPair, link: &mut Link) -> Option<Pulse<'static>> {
-        match self.gate.pass_step(step).map(Pulse::kept) {
+        let passed = self.gate.pass_step(step).map(Pulse::kept);
+        self.count(passed, link)
+    }
+
+    /// A step that has passed the gate counts as made; one that has not stops the machine.
+    #[inline(always)] // from one place where there are two motors
+    pub(super) fn count(
+        &mut self,
+        passed: Result<Pulse<'static>, Blocked>,
+        link: &mut Link,
+    ) -> Option<Pulse<'static>> {
+        match passed {
             Ok(pulse) => {
                 self.position.x = self.position.x.saturating_add(pulse.x().into());
                 self.position.y = self.position.y.saturating_add(pulse.y().into());
@@ -58,7 +69,7 @@ impl<M: Modes> Motion<M> {
                 self.stop(Stop::Limit { axis, end }, link);
                 None
             }
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             Err(Blocked::LimitZ { .. }) => None,
         }
     }
@@ -168,7 +179,7 @@ impl<M: Modes> Motion<M> {
 
     /// Plans what the queue has and the planner takes.
     pub(super) fn fill(&mut self, now: Duration, link: &mut Link) {
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         if M::Z {
             return self.fill_rising(now, link);
         }
@@ -204,9 +215,9 @@ impl<M: Modes> Motion<M> {
         let waits = |next| match next {
             Command::Plot(_) => jogs,
             Command::Jog { .. } => !jogs,
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             Command::ToZ(_) => jogs,
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             Command::JogZ { .. } => !jogs,
             _ => true,
         };
@@ -248,7 +259,7 @@ impl<M: Modes> Motion<M> {
                     self.settings.pen_settle
                 };
                 let run = HomingRun::new(now.saturating_add(settle));
-                #[cfg(feature = "third-axis")]
+                #[cfg(feature = "third-motor")]
                 self.begin_homing_z();
                 self.state = State::Homing(run);
             }
@@ -261,7 +272,7 @@ impl<M: Modes> Motion<M> {
                 let _ = link.reports.push(Report::Done);
             }
             Command::GoOn => {}
-            #[cfg(feature = "third-axis")]
+            #[cfg(feature = "third-motor")]
             Command::ToZ(_) | Command::JogZ { .. } => {}
             Command::Unlock => {
                 self.gate.reset();
@@ -277,15 +288,19 @@ impl<M: Modes> Motion<M> {
 
     /// One turn of homing.
     pub(super) fn home(&mut self, now: Duration, drivers: Drivers, link: &mut Link) -> Option<Step<'static>> {
-        #[cfg(feature = "third-axis")]
+        #[cfg(feature = "third-motor")]
         if M::Z && self.homes_z() {
             let step = self.home_z(now, drivers, link);
             if step.is_some() || self.homes_z() || self.state == State::Ready {
                 return step;
             }
         }
+        #[cfg(feature = "third-motor")]
+        let limits = self.homing_limits();
         let State::Homing(run) = &mut self.state else { return None };
-        let result = match run.next(&self.settings, self.gate.limits()) {
+        #[cfg(not(feature = "third-motor"))]
+        let limits = self.gate.limits();
+        let result = match run.next(&self.settings, limits) {
             Ok((at, _)) if !has_come(at, now) || drivers == Drivers::Busy => {
                 self.due = Some(at);
                 return None;

@@ -1,12 +1,13 @@
-//! What the motion side does with a third axis.
+//! What the motion side does with a third motor: that of a third axis, or a second one of x or y.
 
+use super::super::squaring::{SquaringAxis, SquaringProgress, SquaringStatus};
 use super::super::z_axis::{ZHomingProgress, ZHomingStatus};
 use super::super::{Command, Drivers, Link, Report, Step, Stop};
 use super::{Motion, State};
-use crate::PlotOp;
 use crate::planner::{Keep as _, Modes};
-use crate::safety::{Blocked, Pulse, ZSwitches};
+use crate::safety::{Blocked, EndSwitches, Pulse};
 use crate::seconds::has_come;
+use crate::{Axis, Direction, LimitSwitches, PlotOp};
 use core::time::Duration;
 
 /// Where the third axis is.
@@ -18,7 +19,9 @@ pub(super) struct ZState {
     to_mm: Option<f64>,
     homing: Option<ZHomingProgress>,
     /// How many steps below the place where homing found it, it was believed to be.
-    pub(super) off_steps: Option<i32>,
+    off_steps: Option<i32>,
+    squaring: Option<SquaringProgress>,
+    skew_steps: Option<i32>,
 }
 
 impl<M: Modes> Motion<M> {
@@ -48,7 +51,7 @@ impl<M: Modes> Motion<M> {
     }
 
     /// Takes the state of the limit switches of the third axis.
-    pub const fn z_switches(&mut self, switches: ZSwitches) {
+    pub const fn z_switches(&mut self, switches: EndSwitches) {
         self.gate.set_z_limits(switches);
     }
 
@@ -117,26 +120,57 @@ impl<M: Modes> Motion<M> {
         self.end_what_waits(link);
     }
 
-    /// Begins with the third axis, if it is homed.
+    /// How many steps farther than the first the second motor of an axis went when both were made square
+    /// last.
+    #[must_use]
+    pub fn skew_steps(&self) -> Option<i32> {
+        self.z.get()?.skew_steps
+    }
+
+    /// Takes the state of the limit switches of the second motor of an axis.
+    pub const fn second_switches(&mut self, switches: EndSwitches) {
+        if let Some(second) = self.settings.second {
+            self.gate.set_second_limits(second.axis, switches);
+        }
+    }
+
+    /// The limit switches as homing looks at them: where an axis has two motors, either's counts.
+    pub(super) fn homing_limits(&self) -> LimitSwitches {
+        let mut limits = self.gate.limits();
+        if let Some(second) = self.settings.second {
+            let EndSwitches { lower, upper } = self.gate.second_limits();
+            for (end, pressed) in [(Direction::Minus, lower), (Direction::Plus, upper)] {
+                limits.set(second.axis, end, pressed || limits.blocks(second.axis, end));
+            }
+        }
+        limits
+    }
+
+    /// Begins with the third axis, if it is homed, and makes two motors square.
     pub(super) fn begin_homing_z(&mut self) {
         let homes = self.settings.z.is_some_and(|z| z.home.is_some());
         if let Some(state) = self.z.get_mut() {
             state.homing = homes.then(ZHomingProgress::default);
+            state.squaring = self.settings.second.map(|_| SquaringProgress::default());
         }
     }
 
-    /// Whether the third axis is being homed.
+    /// Whether a third motor has something to do before the axes are homed.
     pub(super) fn homes_z(&self) -> bool {
-        matches!(self.state, State::Homing(_)) && self.z.get().is_some_and(|state| state.homing.is_some())
+        let is_busy = self.z.get().is_some_and(|state| state.homing.is_some() || state.squaring.is_some());
+        matches!(self.state, State::Homing(_)) && is_busy
     }
 
-    /// One turn of it.
+    /// One turn of that.
     pub(super) fn home_z(
         &mut self,
         now: Duration,
         drivers: Drivers,
         link: &mut Link,
     ) -> Option<Step<'static>> {
+        if self.z.get().is_some_and(|state| state.homing.is_none()) {
+            return self.make_square(now, drivers, link);
+        }
         let switches = self.gate.z_limits();
         let z = self.settings.z?;
         let (State::Homing(run), Some(state)) = (&mut self.state, self.z.get_mut()) else { return None };
@@ -165,6 +199,53 @@ impl<M: Modes> Motion<M> {
                 self.halt(link);
                 self.state = State::Ready;
                 let _ = link.reports.push(Report::NotHomedZ { at: self.position_mm(), error });
+                None
+            }
+        }
+    }
+
+    /// One turn of making both motors of an axis square.
+    fn make_square(&mut self, now: Duration, drivers: Drivers, link: &mut Link) -> Option<Step<'static>> {
+        let second = self.settings.second?;
+        let home = if second.axis == Axis::X { &self.settings.home_x } else { &self.settings.home_y };
+        let axis = SquaringAxis {
+            second,
+            start_hz: home.start_hz.min(home.fast_hz),
+            slow_hz: home.slow_hz.min(home.start_hz),
+            pull_off_steps: home.pull_off_steps.max(1),
+            release_steps: home.release_steps,
+            most_steps: home.most_steps,
+        };
+        let limits = self.gate.limits();
+        let first = EndSwitches {
+            lower: limits.blocks(second.axis, Direction::Minus),
+            upper: limits.blocks(second.axis, Direction::Plus),
+        };
+        let switches = [first, self.gate.second_limits()];
+        let (State::Homing(run), Some(state)) = (&mut self.state, self.z.get_mut()) else { return None };
+        let squaring = state.squaring.as_mut()?;
+        match squaring.update(&axis, switches) {
+            Ok(SquaringStatus::Step { ways, rate_hz }) => {
+                let at = run.after(rate_hz);
+                if !has_come(at, now) || drivers == Drivers::Busy {
+                    self.due = Some(at);
+                    return None;
+                }
+                squaring.made();
+                let is_late = self.lateness.given(at, now, &mut self.base);
+                run.made_other(if is_late { now } else { at });
+                let passed = self.gate.pass_apart(second.axis, ways).map(Pulse::kept);
+                self.count(passed, link).map(|pulse| Step { at, pulse })
+            }
+            Ok(SquaringStatus::Done { skew_steps }) => {
+                (state.squaring, state.skew_steps) = (None, Some(skew_steps));
+                None
+            }
+            Err(error) => {
+                state.squaring = None;
+                self.halt(link);
+                self.state = State::Ready;
+                let _ = link.reports.push(Report::NotSquared { at: self.position_mm(), error });
                 None
             }
         }
