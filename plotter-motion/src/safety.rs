@@ -284,22 +284,27 @@ impl Pulse<'_> {
         }
     }
 
-    /// The share of a third motor, as the driver of an axis takes it: its step as one of x.
+    /// The share of a third axis, as the driver of an axis takes it.
     #[cfg(feature = "third-motor")]
     #[must_use]
-    pub const fn of_z(self) -> Self {
-        Self { x: self.z, y: 0, z: 0, apart: None, gate: PhantomData }
+    pub const fn of_z(self, axis: Axis) -> Self {
+        self.alone(axis, self.z)
     }
 
     /// The share of the second motor of an axis, as the driver of that axis takes it.
     #[cfg(feature = "third-motor")]
     #[must_use]
     pub const fn of_second(self, axis: Axis) -> Self {
-        let step = self.second(axis);
-        match axis {
-            Axis::X => Self { x: step, y: 0, z: 0, apart: None, gate: PhantomData },
-            Axis::Y => Self { x: 0, y: step, z: 0, apart: None, gate: PhantomData },
-        }
+        self.alone(axis, self.second(axis))
+    }
+
+    #[cfg(feature = "third-motor")]
+    const fn alone(self, axis: Axis, step: i8) -> Self {
+        let (x, y) = match axis {
+            Axis::X => (step, 0),
+            Axis::Y => (0, step),
+        };
+        Self { x, y, z: 0, apart: None, gate: self.gate }
     }
 
     /// As [`Drive::kept`].
