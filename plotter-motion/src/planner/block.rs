@@ -18,6 +18,7 @@ pub(super) enum Kind {
     Arc,
     Parabola,
     /// An arc that rises or falls on its way.
+    #[cfg(feature = "third-motor")]
     Helix,
     /// A standstill of `length` seconds.
     Dwell,
@@ -36,6 +37,7 @@ pub(super) enum Bend {
     /// inside; and the square of the speed as of an arc.
     Parabola { lean: f32, inwards: f32, form2: f32 },
     /// Greatest acceleration along it, its turn, 0 of a line, and the square of the greatest speed.
+    #[cfg(feature = "third-motor")]
     Rising { accel: f32, sweep_rad: f32, form2: f32 },
 }
 
@@ -94,6 +96,7 @@ impl Block {
     ) -> Self {
         let (kind, centre) = match shape {
             Shape::Line => (Kind::Line, to),
+            #[cfg(feature = "third-motor")]
             Shape::Arc { centre, .. } if matches!(bend, Bend::Rising { .. }) => (Kind::Helix, centre),
             Shape::Arc { centre, .. } => (Kind::Arc, centre),
             Shape::Parabola { control } => (Kind::Parabola, control),
@@ -102,6 +105,7 @@ impl Block {
             Bend::Line { accel } => (0.0, accel, 0.0),
             Bend::Arc { sweep_rad, form2 } => (sweep_rad, 0.0, 1.0 / form2),
             Bend::Parabola { lean, inwards, form2 } => (lean, inwards, 1.0 / form2),
+            #[cfg(feature = "third-motor")]
             Bend::Rising { accel, sweep_rad, form2 } => (sweep_rad, accel, 1.0 / form2),
         };
         let (feed_mm_s, to_centre) = (root(feed2), to.way_to(&centre));
@@ -139,7 +143,11 @@ impl Block {
 
     /// Whether it moves.
     pub(super) fn is_path(&self) -> bool {
-        matches!(self.kind, Kind::Line | Kind::Jog | Kind::Arc | Kind::Parabola | Kind::Helix)
+        #[cfg(feature = "third-motor")]
+        if self.kind == Kind::Helix {
+            return true;
+        }
+        matches!(self.kind, Kind::Line | Kind::Jog | Kind::Arc | Kind::Parabola)
     }
 
     pub(super) fn number(&self) -> u8 {
@@ -224,7 +232,9 @@ impl Block {
     pub(super) fn course(&self) -> Course {
         let centre = self.to.after(self.to_centre);
         let shape = match self.kind {
-            Kind::Arc | Kind::Helix => Shape::Arc { centre, sweep_rad: self.form },
+            Kind::Arc => Shape::Arc { centre, sweep_rad: self.form },
+            #[cfg(feature = "third-motor")]
+            Kind::Helix => Shape::Arc { centre, sweep_rad: self.form },
             Kind::Parabola => Shape::Parabola { control: centre },
             _ => Shape::Line,
         };

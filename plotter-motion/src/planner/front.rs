@@ -7,6 +7,7 @@ use super::limits::{Limits, Share, Shares};
 use super::merge::{Merged, Pace};
 use super::modes::{Keep as _, Modes};
 use super::ring::{Ring, narrow};
+#[cfg(feature = "third-motor")]
 use super::rise::Rise;
 use super::rounding::{CHORD_SHARE, MERGED_SHARE, PutOff, SHORTEST_MM, Vertex, Waiting as _};
 use super::stretch::{Stretch, Way, direction};
@@ -54,6 +55,7 @@ pub(super) struct Front<M: Modes> {
     shares: M::Kept<Shares>,
     /// Whether lines are jogs.
     jogs: bool,
+    #[cfg(feature = "third-motor")]
     pub(super) rise: M::Rise<Rise>,
 }
 
@@ -72,6 +74,7 @@ impl<M: Modes> Front<M> {
             put_off: M::Kept::default(),
             shares: M::Kept::default(),
             jogs: false,
+            #[cfg(feature = "third-motor")]
             rise: M::Rise::default(),
         }
     }
@@ -114,11 +117,21 @@ impl<M: Modes> Front<M> {
     /// Starts again at another place, with the pen up.
     pub(super) fn restart(&mut self, position: Point) {
         let shares = core::mem::take(&mut self.shares);
-        let mut rise = core::mem::take(&mut self.rise);
-        if let Some(rise) = rise.get_mut() {
-            *rise = rise.restarted();
-        }
-        *self = Self { power: self.power, shares, rise, ..Self::at(position) };
+        #[cfg(feature = "third-motor")]
+        let rise = {
+            let mut rise = core::mem::take(&mut self.rise);
+            if let Some(rise) = rise.get_mut() {
+                *rise = rise.restarted();
+            }
+            rise
+        };
+        *self = Self {
+            power: self.power,
+            shares,
+            #[cfg(feature = "third-motor")]
+            rise,
+            ..Self::at(position)
+        };
     }
 
     /// Most blocks that one operation gives. In exact mode: a short segment that was held back, and the new
@@ -674,6 +687,7 @@ impl<M: Modes> Front<M> {
     /// Gives out a block with the speed that the corner at its start allows.
     fn emit<const N: usize>(&mut self, stretch: Stretch, limits: &Limits, ring: &mut Ring<N>) {
         let Some(run) = &mut self.run else { return };
+        #[cfg(feature = "third-motor")]
         let (stretch, rising2) = match self.rise.get_mut() {
             Some(rise) => rise.take(stretch, limits),
             None => (stretch, f32::INFINITY),
@@ -699,6 +713,7 @@ impl<M: Modes> Front<M> {
             let is_stop = limits.settings.path_of::<M>() != PathMode::Exact && x * u + y * v < 0.0;
             let corner2 = corner_speed2(before.direction, entry, shorter_mm, limits);
             block.corner2 = if is_stop { 0.0 } else { corner2 };
+            #[cfg(feature = "third-motor")]
             if M::Z {
                 block.corner2 = least(block.corner2, rising2);
             }

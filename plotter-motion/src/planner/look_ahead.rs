@@ -5,9 +5,9 @@ use super::front::Front;
 use super::limits::{Limits, Shares, Wish};
 use super::modes::{AllModes, Keep as _, Modes};
 use super::ring::{Ring, narrow};
-use super::rise::Heights;
 #[cfg(feature = "third-motor")]
-use super::rise::ZLimits;
+use super::rise::{Heights, ZLimits};
+
 use super::time_law::TimeLaw;
 use super::{Action, PlanError, PlannerSettings};
 use crate::extremes::smaller;
@@ -61,6 +61,7 @@ pub struct Planner<const N: usize, M: Modes = AllModes> {
     hold: bool,
     /// The course that was given out last, whose greatest speed changes with the overrides.
     under_way: M::Kept<Wish>,
+    #[cfg(feature = "third-motor")]
     heights: M::Rise<Heights<N>>,
 }
 
@@ -110,6 +111,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             time_law: TimeLaw::over(&limits),
             hold: false,
             under_way: M::Kept::default(),
+            #[cfg(feature = "third-motor")]
             heights: M::Rise::default(),
         }
     }
@@ -124,8 +126,9 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     #[must_use]
     pub fn has_room(&self) -> bool {
         // Where z lifts the pen, that is a block more.
-        let lifts = self.front.rise.get().is_some_and(|rise| rise.pen_mm.is_some());
-        let most = Front::<M>::most_blocks(&self.limits.settings) + usize::from(lifts);
+        let most = Front::<M>::most_blocks(&self.limits.settings);
+        #[cfg(feature = "third-motor")]
+        let most = most + usize::from(self.front.rise.get().is_some_and(|rise| rise.pen_mm.is_some()));
         self.ring.room() >= most && !self.front.has_chords()
     }
 
@@ -162,14 +165,16 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         if M::Z {
             self.lift_for(&op)?;
         }
+        #[cfg(feature = "third-motor")]
         let before = self.ring.len();
         let pushed = self.front.push(op, &self.limits, &mut self.ring);
+        #[cfg(feature = "third-motor")]
         self.note_heights(before);
         pushed
     }
 
     /// All blocks behind the first `before` end at the height that the path has come to.
-    #[inline(always)] // nothing of it is left where there are two axes
+    #[cfg(feature = "third-motor")]
     fn note_heights(&mut self, before: usize) {
         if let (Some(heights), Some(rise)) = (self.heights.get_mut(), self.front.rise.get()) {
             for _ in before..self.ring.len() {
@@ -189,8 +194,10 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             return Err(PlanError::Full);
         }
         self.stale = true;
+        #[cfg(feature = "third-motor")]
         let before = self.ring.len();
         let pushed = self.front.jog(&to, speed_mm_s, &self.limits, &mut self.ring);
+        #[cfg(feature = "third-motor")]
         self.note_heights(before);
         pushed
     }
@@ -267,8 +274,10 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         if M::Z {
             self.lift_for(&PlotOp::Travel { to: self.position() })?;
         }
+        #[cfg(feature = "third-motor")]
         let before = self.ring.len();
         self.front.lift(&self.limits, &mut self.ring);
+        #[cfg(feature = "third-motor")]
         self.note_heights(before);
         Ok(())
     }
@@ -284,8 +293,10 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             return Err(PlanError::Full);
         }
         self.stale = true;
+        #[cfg(feature = "third-motor")]
         let before = self.ring.len();
         self.front.end_run(&self.limits, &mut self.ring);
+        #[cfg(feature = "third-motor")]
         self.note_heights(before);
         Ok(())
     }
@@ -295,6 +306,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     pub fn clear(&mut self, position: Point) {
         self.front.restart(position);
         self.ring.clear();
+        #[cfg(feature = "third-motor")]
         if let Some(heights) = self.heights.get_mut() {
             heights.clear();
         }
@@ -356,29 +368,24 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         if self.is_held() {
             return None;
         }
+        #[cfg(feature = "third-motor")]
         let before = self.ring.len();
         if self.front.has_chords() && self.front.take_chords(&self.limits, &mut self.ring) {
             self.stale = true;
         }
+        #[cfg(feature = "third-motor")]
         self.note_heights(before);
         let head = self.ring.get(0)?;
         let action = match head.kind {
-            Kind::Line | Kind::Jog | Kind::Arc | Kind::Parabola | Kind::Helix => {
-                #[allow(unused_mut, reason = "it has a height only with a third axis")]
-                let mut course = head.course();
-                #[cfg(feature = "third-motor")]
-                if let Some(heights) = self.heights.get() {
-                    course.to_z_mm = heights.first();
-                }
-                Action::Course(course)
-            }
+            Kind::Line | Kind::Jog | Kind::Arc | Kind::Parabola => Action::Course(head.course()),
+            #[cfg(feature = "third-motor")]
+            Kind::Helix => Action::Course(head.course()),
             Kind::Dwell => Action::Dwell(duration(f64::from(head.length())).unwrap_or_default()),
             Kind::SelectPen => Action::SelectPen(head.number()),
             Kind::NewPage => Action::NewPage,
         };
-        if let Some(heights) = self.heights.get_mut() {
-            heights.pop();
-        }
+        #[cfg(feature = "third-motor")]
+        let (action, head) = (self.rising(action), self.ring.get(0)?);
         if !self.time_law.begin_s_curve(head) {
             if let Some(under_way) = self.under_way.get_mut() {
                 *under_way = head.wish();
@@ -494,6 +501,17 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     pub fn set_pen_heights(&mut self, up_mm: f64, down_mm: f64) {
         if let Some(rise) = self.front.rise.get_mut() {
             rise.pen_mm = Some([up_mm, down_mm]);
+        }
+    }
+
+    /// With the height at which it ends.
+    fn rising(&mut self, action: Action) -> Action {
+        let Some(heights) = self.heights.get_mut() else { return action };
+        let to_z_mm = heights.first();
+        heights.pop();
+        match action {
+            Action::Course(course) => Action::Course(super::Course { to_z_mm, ..course }),
+            _ => action,
         }
     }
 

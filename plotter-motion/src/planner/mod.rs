@@ -25,6 +25,7 @@ mod modes;
 mod phase;
 mod ramps;
 mod ring;
+#[cfg(feature = "third-motor")]
 mod rise;
 mod rounding;
 mod s_curve;

@@ -14,13 +14,11 @@ use super::block::Bend;
 use super::limits::Limits;
 use super::stretch::Stretch;
 use crate::extremes::least;
-#[cfg(feature = "third-motor")]
 use crate::geom::single;
 use crate::root::root;
 
 /// What a third axis can do.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg(feature = "third-motor")]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ZLimits {
     /// Greatest speed of z, mm/s.
@@ -31,7 +29,6 @@ pub struct ZLimits {
     pub step_mm: f64,
 }
 
-#[cfg(feature = "third-motor")]
 impl ZLimits {
     /// Whether a motion can be planned with them.
     pub(crate) const fn check(&self) -> Result<(), super::PlanError> {
@@ -78,7 +75,6 @@ pub(super) struct Rise {
 }
 
 impl Rise {
-    #[cfg(feature = "third-motor")]
     pub(super) fn set_limits(&mut self, limits: &ZLimits) {
         let [speed, accel, step_mm] =
             [limits.speed_mm_s, limits.accel_mm_s2, limits.step_mm].map(super::ring::narrow);
@@ -86,13 +82,11 @@ impl Rise {
     }
 
     /// Whether it has been told what the axis can do.
-    #[cfg(feature = "third-motor")]
     pub(super) fn has_limits(&self) -> bool {
         self.speed > 0.0
     }
 
     /// The next block ends at this height. Says whether it is another one.
-    #[cfg(feature = "third-motor")]
     pub(super) fn go_to(&mut self, height_mm: f64) -> bool {
         self.by_mm = single(height_mm - self.at_mm);
         self.at_mm = height_mm;
@@ -183,7 +177,6 @@ impl<const N: usize> Heights<N> {
         }
     }
 
-    #[cfg(feature = "third-motor")]
     pub(super) fn first(&self) -> Option<f64> {
         self.ends_mm.get(self.head).copied().filter(|_| self.len > 0)
     }

@@ -68,6 +68,7 @@ pub enum Command {
 
 impl Command {
     /// Whether it moves by hand.
+    #[inline(always)] // so that nothing but the kind is looked at
     pub(super) const fn is_jog(&self) -> bool {
         #[cfg(feature = "third-motor")]
         if let Self::JogZ { .. } = self {

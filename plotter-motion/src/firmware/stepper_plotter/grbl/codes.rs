@@ -6,7 +6,6 @@ use crate::decimal_text::Thousandths;
 use crate::gcode::{Complaint, Position, Problem, Word};
 use crate::homing::HomingError;
 use crate::whole::is_whole;
-use core::fmt;
 
 /// What stands after `error:`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -173,36 +172,32 @@ impl Alarm {
     }
 }
 
+/// The coordinates of a place or a way, mm; the third where there may be one.
+#[cfg(not(feature = "third-motor"))]
+pub(super) fn coordinates(x: f64, y: f64) -> (Thousandths, Thousandths) {
+    (Thousandths::of(x), Thousandths::of(y))
+}
+
 /// The coordinates of a place or a way, mm.
-pub(super) struct Coordinates {
-    x: Thousandths,
-    y: Thousandths,
-    #[cfg(feature = "third-motor")]
-    z: Thousandths,
+#[cfg(feature = "third-motor")]
+pub(super) fn coordinates(x: f64, y: f64, z: Option<f64>) -> (Thousandths, Thousandths, Thousandths) {
+    (Thousandths::of(x), Thousandths::of(y), Thousandths::of(z.unwrap_or(0.0)))
 }
 
-impl Coordinates {
-    pub(super) fn of(x: f64, y: f64) -> Self {
-        Self {
-            x: Thousandths::of(x),
-            y: Thousandths::of(y),
-            #[cfg(feature = "third-motor")]
-            z: Thousandths::of(0.0),
-        }
-    }
-
-    /// With the third of a machine that has three.
-    #[cfg(feature = "third-motor")]
-    pub(super) fn with_z(self, z: Option<f64>) -> Self {
-        Self { z: Thousandths::of(z.unwrap_or(0.0)), ..self }
-    }
+/// A text with the coordinates of a place between two others: where there are two axes, the third is part of
+/// the text.
+#[cfg(not(feature = "third-motor"))]
+macro_rules! placed {
+    ($before:literal ($($first:expr),*), $at:expr, $after:literal ($($last:expr),*)) => {
+        format_args!(concat!($before, "{},{},0.000", $after), $($first,)* $at.0, $at.1, $($last),*)
+    };
 }
 
-impl fmt::Display for Coordinates {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        #[cfg(feature = "third-motor")]
-        return write!(f, "{},{},{}", self.x, self.y, self.z);
-        #[cfg(not(feature = "third-motor"))]
-        write!(f, "{},{},0.000", self.x, self.y)
-    }
+#[cfg(feature = "third-motor")]
+macro_rules! placed {
+    ($before:literal ($($first:expr),*), $at:expr, $after:literal ($($last:expr),*)) => {
+        format_args!(concat!($before, "{},{},{}", $after), $($first,)* $at.0, $at.1, $at.2, $($last),*)
+    };
 }
+
+pub(super) use placed;

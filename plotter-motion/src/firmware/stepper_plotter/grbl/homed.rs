@@ -1,6 +1,6 @@
 //! What homing has measured, held against what is said of the machine.
 
-use super::super::StepperPlotterSettings;
+use super::super::{Report, Status, StepperPlotterSettings};
 use super::{Grbl, Pens};
 use crate::decimal_text::{Plain, Thousandths, Whole};
 use crate::homing::Homed;
@@ -20,18 +20,20 @@ impl<P: Pens> Grbl<P> {
         }
     }
 
-    /// Tells by how much two motors of an axis were out of square.
-    #[cfg(feature = "third-motor")]
-    pub(super) fn tell_skew(&mut self, steps: i32) {
-        self.out.line(format_args!(
-            "[MSG:Squared: the {} motor was {} steps ahead]",
-            Plain(if steps < 0 { "first" } else { "second" }),
-            Whole(steps.unsigned_abs().into())
-        ));
-    }
-
-    /// Warns of an axis that is not as long as it was, or shorter than its side of the area.
-    pub(super) fn tell_homed(&mut self, homed: Homed) {
+    /// What is to be said of a homing: by how much two motors of an axis were out of square; an axis that is
+    /// not as long as it was, or shorter than its side of the area.
+    pub(super) fn tell_measured(&mut self, report: &Report, status: &Status) {
+        let Report::Homed { result: Ok(homed), .. } = *report else { return };
+        #[cfg(feature = "third-motor")]
+        if let Some(steps) = status.skew_steps {
+            self.out.line(format_args!(
+                "[MSG:Squared: the {} motor was {} steps ahead]",
+                Plain(if steps < 0 { "first" } else { "second" }),
+                Whole(steps.unsigned_abs().into())
+            ));
+        }
+        #[cfg(not(feature = "third-motor"))]
+        let _ = status;
         let Some(kept) = self.kept.get_mut() else { return };
         let before = kept.homed.replace(homed);
         let StepperPlotterSettings { stored, backlash, .. } = self.settings;

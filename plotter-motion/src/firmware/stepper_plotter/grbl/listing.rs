@@ -3,7 +3,7 @@
 use super::super::output::Output;
 use super::super::settings::FULL_POWER;
 use super::super::{COMMANDS, Setting, StartupLines, StepperPlotterSettings};
-use super::codes::Coordinates;
+use super::codes::{coordinates, placed};
 #[cfg(feature = "third-motor")]
 use super::heights::Heights;
 use super::rx_buffer::RX_BYTES;
@@ -76,24 +76,32 @@ impl Listing {
             Self::Offsets => match index {
                 0..SYSTEMS => {
                     let origin = interpreter.origin(index);
-                    let origin = Coordinates::of(origin.x, origin.y);
+                    #[cfg(not(feature = "third-motor"))]
+                    let origin = coordinates(origin.x, origin.y);
                     #[cfg(feature = "third-motor")]
-                    let origin = origin.with_z(about.heights.map(|heights| heights.origin(index)));
-                    out.line(format_args!("[G{}:{origin}]", Whole(54 + u64::from(index))));
+                    let origin =
+                        coordinates(origin.x, origin.y, about.heights.map(|heights| heights.origin(index)));
+                    out.line(placed!("[G{}:"(Whole(54 + u64::from(index))), origin, "]"()));
                 }
                 SYSTEMS | 7 => {
                     let home = interpreter.home_place(index == 7);
-                    let home = Coordinates::of(home.x, home.y);
+                    #[cfg(not(feature = "third-motor"))]
+                    let home = coordinates(home.x, home.y);
                     #[cfg(feature = "third-motor")]
-                    let home = home.with_z(about.heights.map(|heights| heights.home_place(index == 7)));
-                    out.line(format_args!("[G{}:{home}]", Plain(if index == 7 { "30" } else { "28" })));
+                    let home = coordinates(
+                        home.x,
+                        home.y,
+                        about.heights.map(|heights| heights.home_place(index == 7)),
+                    );
+                    out.line(placed!("[G{}:"(Plain(if index == 7 { "30" } else { "28" })), home, "]"()));
                 }
                 8 => {
                     let shift = interpreter.shift();
-                    let shift = Coordinates::of(shift.x, shift.y);
+                    #[cfg(not(feature = "third-motor"))]
+                    let shift = coordinates(shift.x, shift.y);
                     #[cfg(feature = "third-motor")]
-                    let shift = shift.with_z(about.heights.map(Heights::shift));
-                    out.line(format_args!("[G92:{shift}]"));
+                    let shift = coordinates(shift.x, shift.y, about.heights.map(Heights::shift));
+                    out.line(placed!("[G92:"(), shift, "]"()));
                 }
                 9 => {
                     out.line(format_args!("[TLO:{}]", Thousandths::of(interpreter.modes().length_mm)));

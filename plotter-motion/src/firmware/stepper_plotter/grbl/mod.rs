@@ -212,9 +212,8 @@ impl<P: Pens> Grbl<P> {
         if core::mem::take(&mut self.greeting) {
             self.greet();
         } else if let Some(report) = link.reports.pop() {
-            #[cfg(feature = "third-motor")]
-            if let (Report::Homed { result: Ok(_), .. }, Some(steps)) = (report, status.skew_steps) {
-                self.tell_skew(steps);
+            if self.kept.get().is_some() {
+                self.tell_measured(&report, status);
             }
             self.take(report);
         } else if core::mem::take(&mut self.status_wanted) {
@@ -316,10 +315,7 @@ impl<P: Pens> Grbl<P> {
             Report::Homed { at, result } => {
                 self.interpreter.stand_at(at);
                 match result {
-                    Ok(homed) => {
-                        self.alarm = None;
-                        self.tell_homed(homed);
-                    }
+                    Ok(_) => self.alarm = None,
                     Err(error) => {
                         self.alarm(Alarm::of(error));
                         self.out.line(format_args!("[MSG:{error}]"));

@@ -1,12 +1,12 @@
 //! The answer to `?`.
 
 use super::super::{Activity, Link, Percents, Status, settings::FULL_POWER};
-use super::codes::Coordinates;
+use super::codes::{coordinates, placed};
 use super::listing::BLOCKS;
 use super::{Grbl, MOST_COMMANDS, Mode, Pens, REPORTS_WITHOUT_OFFSET};
 #[cfg(feature = "third-motor")]
 use crate::Axis;
-use crate::decimal_text::{Plain, Whole};
+use crate::decimal_text::{Plain, Thousandths, Whole};
 use core::fmt;
 
 impl<P: Pens> Grbl<P> {
@@ -24,9 +24,10 @@ impl<P: Pens> Grbl<P> {
             Activity::Hold { stands: false } => "Hold:1",
             Activity::Home => "Home",
         });
-        let at = Coordinates::of(status.at.x, status.at.y);
+        #[cfg(not(feature = "third-motor"))]
+        let at = coordinates(status.at.x, status.at.y);
         #[cfg(feature = "third-motor")]
-        let at = at.with_z(status.z_mm);
+        let at = coordinates(status.at.x, status.at.y, status.z_mm);
         // As Grbl counts: blocks that are not over, of the number that it reports, even if there is room for
         // more.
         let queued = link.commands.room().saturating_sub(MOST_COMMANDS).min(BLOCKS);
@@ -52,8 +53,10 @@ impl<P: Pens> Grbl<P> {
         };
         let offset = self.offset();
         let overrides = self.overrides_told(status.percents, offset.0.is_some());
-        self.out.line(format_args!(
-            "<{state}|MPos:{at}|Bf:{blocks},{bytes}|FS:{feed_mm_min},{power}{pins}{offset}{overrides}>"
+        self.out.line(placed!(
+            "<{}|MPos:"(state),
+            at,
+            "|Bf:{},{}|FS:{},{}{}{}{}>"(blocks, bytes, feed_mm_min, power, pins, offset, overrides)
         ));
     }
 
@@ -75,10 +78,13 @@ impl<P: Pens> Grbl<P> {
         }
         self.reports_to_offset = REPORTS_WITHOUT_OFFSET;
         let offset = self.interpreter.modes().offset;
-        let offset = Coordinates::of(offset.x, offset.y);
+        #[cfg(not(feature = "third-motor"))]
+        let offset = coordinates(offset.x, offset.y);
         #[cfg(feature = "third-motor")]
-        let offset =
-            offset.with_z(self.told_heights().map(|heights| heights.offset(self.interpreter.modes().system)));
+        let offset = {
+            let system = self.interpreter.modes().system;
+            coordinates(offset.x, offset.y, self.told_heights().map(|heights| heights.offset(system)))
+        };
         Offset(Some(offset))
     }
 }
@@ -125,10 +131,13 @@ impl fmt::Display for Pins {
 }
 
 /// `|WCO:`.
-struct Offset(Option<Coordinates>);
+#[cfg(not(feature = "third-motor"))]
+struct Offset(Option<(Thousandths, Thousandths)>);
+#[cfg(feature = "third-motor")]
+struct Offset(Option<(Thousandths, Thousandths, Thousandths)>);
 
 impl fmt::Display for Offset {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.as_ref().map_or(Ok(()), |offset| write!(f, "|WCO:{offset}"))
+        self.0.map_or(Ok(()), |offset| f.write_fmt(placed!("|WCO:"(), offset, ""())))
     }
 }
