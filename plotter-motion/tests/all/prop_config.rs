@@ -49,7 +49,7 @@ static_n_m = 1.3e-3
 const MAY_BE_NEGATIVE: &str = "pen.down_z_mm";
 
 /// Numeric keys that the machine has once.
-const OF_THE_MACHINE: [&str; 61] = [
+const OF_THE_MACHINE: [&str; 70] = [
     "schema",
     "area.width_mm",
     "area.height_mm",
@@ -91,6 +91,15 @@ const OF_THE_MACHINE: [&str; 61] = [
     "homing.release_mm",
     "homing.known_travel_mm",
     "homing.max_travel_mm",
+    "z.steps_per_mm",
+    "z.speed_mm_s",
+    "z.accel_mm_s2",
+    "z.travel_mm",
+    "z.up_mm",
+    "z.down_mm",
+    "z.start_rate_hz",
+    "second_motor.offset_mm",
+    "second_motor.max_skew_mm",
     "stepper_motor.full_steps_per_turn",
     "stepper_motor.microsteps",
     "stepper_motor.holding_n_m",

@@ -1,7 +1,9 @@
 //! [`StepperPlotterSettings`]: what the controller has to know of its machine.
 
 #[cfg(feature = "third-motor")]
-use super::{SecondMotor, ZAxis};
+use super::{SecondMotor, ZAxis, ZHoming, ZPen};
+#[cfg(feature = "third-motor")]
+use crate::config::SecondMotorChoice;
 use crate::gcode::PenConvention;
 use crate::kinematics::{Backlash, Cartesian, MotorScale, ScaleError};
 use crate::planner::{AllModes, Modes};
@@ -282,6 +284,55 @@ impl StepperPlotterSettings {
             home_y: HomingAxis::of(machine, Axis::Y),
             ..Self::default()
         }
+    }
+
+    /// With what the machine says of a third axis and of two motors on an axis, for a controller with
+    /// [`ThreeAxes`](crate::planner::ThreeAxes).
+    ///
+    /// ```
+    /// # use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
+    /// # use plotter_motion::{Machine, MachineConfig};
+    /// let mut config = MachineConfig::stepper_plotter();
+    /// config.z.enabled = true;
+    /// let machine = Machine::new(config)?;
+    /// let settings = StepperPlotterSettings::of(&machine, Dialect::Grbl).with_third_motor_of(&machine);
+    /// assert_eq!(settings.z.map(|z| (z.steps_per_mm, z.travel_mm)), Some((400.0, 30.0)));
+    /// assert_eq!((settings.second, StepperPlotterSettings::of(&machine, Dialect::Grbl).z), (None, None));
+    /// # Ok::<(), plotter_motion::ConfigError>(())
+    /// ```
+    #[cfg(feature = "third-motor")]
+    #[must_use]
+    pub fn with_third_motor_of(self, machine: &Machine) -> Self {
+        let config = machine.config();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
+        let whole = |value: f64| libm::round(value) as u32;
+        let (z, homing) = (config.z, config.homing);
+        let home = ZHoming {
+            start_hz: whole(z.start_rate_hz),
+            slow_hz: whole(homing.slow_rate_hz.min(z.start_rate_hz)),
+            pull_off_steps: whole(homing.pull_off_mm * z.steps_per_mm).max(1),
+            release_steps: whole(homing.release_mm * z.steps_per_mm).max(1),
+            most_steps: whole((z.travel_mm + homing.pull_off_mm + homing.release_mm) * z.steps_per_mm),
+        };
+        let of_z = ZAxis {
+            steps_per_mm: z.steps_per_mm,
+            speed_mm_s: z.speed_mm_s,
+            accel_mm_s2: z.accel_mm_s2,
+            travel_mm: z.travel_mm,
+            pen: z.lifts_pen.then_some(ZPen { up_mm: z.up_mm, down_mm: z.down_mm }),
+            home: z.homes.then_some(home),
+        };
+        let axis = match config.second_motor.axis {
+            SecondMotorChoice::None => None,
+            SecondMotorChoice::X => Some((Axis::X, self.x_steps_per_mm)),
+            SecondMotorChoice::Y => Some((Axis::Y, self.y_steps_per_mm)),
+        };
+        let second = axis.map(|(axis, steps_per_mm)| SecondMotor {
+            axis,
+            offset_steps: crate::toolpath::from_mm(config.second_motor.offset_mm, steps_per_mm),
+            most_skew_steps: whole(config.second_motor.max_skew_mm * steps_per_mm),
+        });
+        Self { z: z.enabled.then_some(of_z), second, ..self }
     }
 
     /// Whether [`ExactOnly`](crate::planner::ExactOnly) is enough for them: the path is exact, the jerk has
