@@ -179,6 +179,26 @@ impl Default for StepperPlotterSettings {
     }
 }
 
+/// [`StepperPlotterSettings`] with the fields of a machine with two axes, and none of a third motor, whether these
+/// are built in or not: for constants that a build script writes.
+#[cfg(feature = "third-motor")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! two_axes {
+    ($settings:ident { $($field:ident: $value:expr),* $(,)? }) => {
+        $settings { $($field: $value,)* z: None, second: None }
+    };
+}
+
+#[cfg(not(feature = "third-motor"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! two_axes {
+    ($settings:ident { $($field:ident: $value:expr),* $(,)? }) => {
+        $settings { $($field: $value),* }
+    };
+}
+
 impl StepperPlotterSettings {
     /// Whether some controller can drive such a machine.
     #[cfg(feature = "serde")]
