@@ -81,6 +81,8 @@ use plotter_motion::{Axis, Direction, safety::Pulse};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct A4988<Step, Dir, Enable, Sleep> {
     axis: Axis,
+    #[cfg(feature = "third-motor")]
+    part: Part,
     step: Step,
     dir: Dir,
     enable: Enable,
@@ -99,6 +101,18 @@ pub struct A4988<Step, Dir, Enable, Sleep> {
     waiting: Option<Direction>,
 }
 
+/// Which motor it is.
+#[cfg(feature = "third-motor")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    /// The one of its axis, or the first.
+    First,
+    /// The second of its axis.
+    Second,
+    /// That of a third axis.
+    Z,
+}
+
 /// What STEP is known to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Level {
@@ -114,6 +128,8 @@ impl<Step, Dir> A4988<Step, Dir, NoPin, NoPin> {
     pub const fn new(axis: Axis, step: Step, dir: Dir, timing: Timing) -> Self {
         Self {
             axis,
+            #[cfg(feature = "third-motor")]
+            part: Part::First,
             step,
             dir,
             enable: NoPin,
@@ -147,6 +163,8 @@ impl<Step, Dir, Enable, Sleep> A4988<Step, Dir, Enable, Sleep> {
         let (enable, sleep) = pins(self.enable, self.sleep);
         A4988 {
             axis: self.axis,
+            #[cfg(feature = "third-motor")]
+            part: self.part,
             step: self.step,
             dir: self.dir,
             enable,
@@ -167,6 +185,42 @@ impl<Step, Dir, Enable, Sleep> A4988<Step, Dir, Enable, Sleep> {
     #[must_use]
     pub fn with_inverted_direction(self) -> Self {
         Self { inverted: true, ..self }
+    }
+
+    /// As the motor of a third axis: of a [`Pulse`] it takes the step of z, upwards as to larger coordinates.
+    ///
+    /// ```
+    /// # use core::time::Duration;
+    /// # use embedded_hal_mock::eh1::digital::{Mock as Pin, State::{High, Low}, Transaction as Set};
+    /// # use plotter_hal::a4988::{A4988, Timing};
+    /// # use plotter_motion::{Axis, LimitSwitches, SafetyGate};
+    /// # let step = Pin::new(&[Set::set(Low), Set::set(High), Set::set(Low)]);
+    /// # let dir = Pin::new(&[Set::set(Low)]);
+    /// let mut lift = A4988::new(Axis::X, step, dir, Timing::DRV8825).of_z();
+    /// lift.start(Duration::ZERO)?;
+    /// let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+    /// let down = gate.pass_z_step(-1).map_err(|_| "stopped")?;
+    /// lift.step(down, Duration::from_millis(2))?; // beside `motors.step(down, …)` of the other two
+    /// while let Some(due) = lift.due() {
+    ///     lift.tick(due)?;
+    /// }
+    /// # let (mut step, mut dir, _, _) = lift.release();
+    /// # step.done();
+    /// # dir.done();
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[cfg(feature = "third-motor")]
+    #[must_use]
+    pub fn of_z(self) -> Self {
+        Self { part: Part::Z, ..self }
+    }
+
+    /// As the second motor of its axis: of a [`Pulse`] it takes what the first takes, but where both are made
+    /// square.
+    #[cfg(feature = "third-motor")]
+    #[must_use]
+    pub fn as_second(self) -> Self {
+        Self { part: Part::Second, ..self }
     }
 
     /// The axis whose share of a [`Pulse`] this motor takes.
@@ -228,6 +282,12 @@ impl<Step, Dir, Enable, Sleep> A4988<Step, Dir, Enable, Sleep> {
 
     /// This motor's share of a pulse.
     const fn share(&self, pulse: Pulse) -> Option<Direction> {
+        #[cfg(feature = "third-motor")]
+        let pulse = match self.part {
+            Part::First => pulse,
+            Part::Second => pulse.of_second(self.axis),
+            Part::Z => pulse.of_z(self.axis),
+        };
         let step = match self.axis {
             Axis::X => pulse.x(),
             Axis::Y => pulse.y(),

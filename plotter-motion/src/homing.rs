@@ -104,6 +104,22 @@ pub struct Homed {
     pub y_steps: u32,
 }
 
+impl Homed {
+    /// Steps to the millimetre, x and y, if a person has found so many millimetres between the places where
+    /// the carriage meets both switches of an axis.
+    ///
+    /// ```
+    /// # use plotter_motion::homing::Homed;
+    /// let homed = Homed { x_steps: 34_000, y_steps: 28_000 };
+    /// let [x, y] = homed.steps_per_mm(388.2, 319.7);
+    /// assert!((x - 87.584).abs() < 1e-3 && (y - 87.582).abs() < 1e-3);
+    /// ```
+    #[must_use]
+    pub fn steps_per_mm(&self, x_mm: f64, y_mm: f64) -> [f64; 2] {
+        [f64::from(self.x_steps) / x_mm, f64::from(self.y_steps) / y_mm]
+    }
+}
+
 /// A step that homing asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

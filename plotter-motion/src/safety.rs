@@ -244,6 +244,11 @@ const fn drive(x: Duty, y: Duty) -> Drive<'static> {
 pub struct Pulse<'gate> {
     x: i8,
     y: i8,
+    #[cfg(feature = "third-motor")]
+    z: i8,
+    /// What the second motor of an axis makes, where that is not what the first makes.
+    #[cfg(feature = "third-motor")]
+    apart: Option<i8>,
     gate: PhantomData<&'gate SafetyGate>,
 }
 
@@ -260,9 +265,59 @@ impl Pulse<'_> {
         self.y
     }
 
+    /// The step of a third motor: -1, 0 or 1. It comes alone.
+    #[cfg(feature = "third-motor")]
+    #[must_use]
+    pub const fn z(self) -> i8 {
+        self.z
+    }
+
+    /// The step of the second motor of an axis that has two: that of the first, but where both are made
+    /// square.
+    #[cfg(feature = "third-motor")]
+    #[must_use]
+    pub const fn second(self, axis: Axis) -> i8 {
+        match (self.apart, axis) {
+            (Some(step), _) => step,
+            (None, Axis::X) => self.x,
+            (None, Axis::Y) => self.y,
+        }
+    }
+
+    /// The share of a third axis, as the driver of an axis takes it.
+    #[cfg(feature = "third-motor")]
+    #[must_use]
+    pub const fn of_z(self, axis: Axis) -> Self {
+        self.alone(axis, self.z)
+    }
+
+    /// The share of the second motor of an axis, as the driver of that axis takes it.
+    #[cfg(feature = "third-motor")]
+    #[must_use]
+    pub const fn of_second(self, axis: Axis) -> Self {
+        self.alone(axis, self.second(axis))
+    }
+
+    #[cfg(feature = "third-motor")]
+    const fn alone(self, axis: Axis, step: i8) -> Self {
+        let (x, y) = match axis {
+            Axis::X => (step, 0),
+            Axis::Y => (0, step),
+        };
+        Self { x, y, z: 0, apart: None, gate: self.gate }
+    }
+
     /// As [`Drive::kept`].
     pub(crate) const fn kept(self) -> Pulse<'static> {
-        pulse(StepPair { x: self.x, y: self.y })
+        Pulse {
+            x: self.x,
+            y: self.y,
+            #[cfg(feature = "third-motor")]
+            z: self.z,
+            #[cfg(feature = "third-motor")]
+            apart: self.apart,
+            gate: PhantomData,
+        }
     }
 }
 
@@ -273,7 +328,15 @@ impl From<Pulse<'_>> for StepPair {
 }
 
 const fn pulse(step: StepPair) -> Pulse<'static> {
-    Pulse { x: step.x, y: step.y, gate: PhantomData }
+    Pulse {
+        x: step.x,
+        y: step.y,
+        #[cfg(feature = "third-motor")]
+        z: 0,
+        #[cfg(feature = "third-motor")]
+        apart: None,
+        gate: PhantomData,
+    }
 }
 
 /// Power of a laser, in 65535ths, that may be switched on: by [`SafetyGate::pass_laser`] only. It ends when
@@ -315,11 +378,19 @@ pub enum Blocked {
         /// At which of its ends.
         end: Direction,
     },
+    /// A step of a third motor leads into a pressed limit switch of its axis.
+    #[cfg(feature = "third-motor")]
+    LimitZ {
+        /// At which of its ends.
+        end: Direction,
+    },
 }
 
 impl fmt::Display for Blocked {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (axis, end) = match self {
+            #[cfg(feature = "third-motor")]
+            Self::LimitZ { end } => ("z", end),
             Self::Stopped => return f.write_str("the machine is stopped: reset the emergency stop first"),
             Self::Limit { axis: Axis::X, end } => ("x", end),
             Self::Limit { axis: Axis::Y, end } => ("y", end),
@@ -384,6 +455,30 @@ impl LimitSwitches {
     }
 }
 
+/// Which limit switches of a third axis, or of the second motor of an axis, are pressed. Of those that a machine
+/// does not have, none is.
+#[cfg(feature = "third-motor")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct EndSwitches {
+    /// At the lower end.
+    pub lower: bool,
+    /// At the upper end.
+    pub upper: bool,
+}
+
+#[cfg(feature = "third-motor")]
+impl EndSwitches {
+    /// What is left of a step.
+    const fn lets(self, step: i8) -> i8 {
+        match step.signum() {
+            1 if self.upper => 0,
+            -1 if self.lower => 0,
+            sign => sign,
+        }
+    }
+}
+
 /// The only way from a [`Demand`] to a [`Drive`].
 ///
 /// A pressed limit switch takes the drive *towards* it and leaves every other. The emergency stop takes all
@@ -414,6 +509,11 @@ impl LimitSwitches {
 #[derive(Debug, PartialEq, Eq)]
 pub struct SafetyGate {
     limits: LimitSwitches,
+    #[cfg(feature = "third-motor")]
+    z: EndSwitches,
+    /// Those of the second motor of an axis.
+    #[cfg(feature = "third-motor")]
+    second: Option<(Axis, EndSwitches)>,
     button_pressed: bool,
     latched: bool,
     stopped_by_host: bool,
@@ -437,6 +537,10 @@ impl SafetyGate {
     pub const fn new(limits: LimitSwitches, button_pressed: bool) -> Self {
         let mut gate = Self {
             limits,
+            #[cfg(feature = "third-motor")]
+            z: EndSwitches { lower: false, upper: false },
+            #[cfg(feature = "third-motor")]
+            second: None,
             button_pressed,
             latched: button_pressed,
             stopped_by_host: false,
@@ -456,6 +560,10 @@ impl SafetyGate {
     const fn note(&mut self) {
         self.stopped = self.latched | self.stopped_by_host;
         self.in_the_way = self.stopped | self.limits.any();
+        #[cfg(feature = "third-motor")]
+        if let Some((_, switches)) = self.second {
+            self.in_the_way |= switches.lower | switches.upper;
+        }
     }
 
     /// The limit switches as last noted.
@@ -596,7 +704,114 @@ impl SafetyGate {
         if step.y < 0 && self.limits.y_min {
             return Err(Blocked::Limit { axis: Axis::Y, end: Direction::Minus });
         }
+        #[cfg(feature = "third-motor")]
+        if let Some((axis, switches)) = self.second {
+            let step = match axis {
+                Axis::X => step.x,
+                Axis::Y => step.y,
+            };
+            if step > 0 && switches.upper {
+                return Err(Blocked::Limit { axis, end: Direction::Plus });
+            }
+            if step < 0 && switches.lower {
+                return Err(Blocked::Limit { axis, end: Direction::Minus });
+            }
+        }
         Ok(pulse(step))
+    }
+
+    /// Notes the limit switches of the second motor of an axis that has two.
+    #[cfg(feature = "third-motor")]
+    pub const fn set_second_limits(&mut self, axis: Axis, switches: EndSwitches) {
+        self.second = Some((axis, switches));
+        self.note();
+    }
+
+    /// The limit switches of the second motor of an axis as last noted.
+    #[cfg(feature = "third-motor")]
+    #[must_use]
+    pub const fn second_limits(&self) -> EndSwitches {
+        match self.second {
+            Some((_, switches)) => switches,
+            None => EndSwitches { lower: false, upper: false },
+        }
+    }
+
+    /// Lets steps of both motors of an axis through, each for itself: a motor that its own pressed switch is
+    /// in the way of makes none, and the other one does.
+    ///
+    /// ```
+    /// # use plotter_motion::{Axis, LimitSwitches, SafetyGate, safety::EndSwitches};
+    /// let mut gate = SafetyGate::new(LimitSwitches { y_min: true, ..LimitSwitches::RELEASED }, false);
+    /// gate.set_second_limits(Axis::Y, EndSwitches::default());
+    /// let pulse = gate.pass_apart(Axis::Y, [-1, -1]).map_err(|_| "stopped")?;
+    /// assert_eq!((pulse.x(), pulse.y(), pulse.second(Axis::Y)), (0, 0, -1));
+    /// # Ok::<(), &str>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Blocked`] says what is in the way of both.
+    #[cfg(feature = "third-motor")]
+    pub const fn pass_apart(&self, axis: Axis, [first, second]: [i8; 2]) -> Result<Pulse<'_>, Blocked> {
+        if self.stopped {
+            return Err(Blocked::Stopped);
+        }
+        let own = EndSwitches {
+            lower: self.limits.blocks_inline(axis, Direction::Minus),
+            upper: self.limits.blocks_inline(axis, Direction::Plus),
+        };
+        let (free, free_second) = (own.lets(first), self.second_limits().lets(second));
+        if free == 0 && free_second == 0 && (first != 0 || second != 0) {
+            let end = if first + second > 0 { Direction::Plus } else { Direction::Minus };
+            return Err(Blocked::Limit { axis, end });
+        }
+        let step = match axis {
+            Axis::X => StepPair { x: free, y: 0 },
+            Axis::Y => StepPair { x: 0, y: free },
+        };
+        Ok(Pulse { apart: Some(free_second), ..pulse(step) })
+    }
+
+    /// Notes the limit switches of a third axis; until then none of them is pressed.
+    #[cfg(feature = "third-motor")]
+    pub const fn set_z_limits(&mut self, switches: EndSwitches) {
+        self.z = switches;
+    }
+
+    /// The limit switches of a third axis as last noted.
+    #[cfg(feature = "third-motor")]
+    #[must_use]
+    pub const fn z_limits(&self) -> EndSwitches {
+        self.z
+    }
+
+    /// Lets a step of a third motor through, 1 upwards and -1 downwards: not into a pressed switch of its
+    /// axis, nor while the machine is stopped.
+    ///
+    /// ```
+    /// # use plotter_motion::{Direction, LimitSwitches, SafetyGate, safety::{Blocked, EndSwitches}};
+    /// let mut gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+    /// gate.set_z_limits(EndSwitches { upper: true, lower: false });
+    /// assert_eq!(gate.pass_z_step(1), Err(Blocked::LimitZ { end: Direction::Plus }));
+    /// assert_eq!(gate.pass_z_step(-1).map(|pulse| (pulse.x(), pulse.y(), pulse.z())), Ok((0, 0, -1)));
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Blocked`] says what is in the way.
+    #[cfg(feature = "third-motor")]
+    pub const fn pass_z_step(&self, step: i8) -> Result<Pulse<'_>, Blocked> {
+        if self.stopped {
+            return Err(Blocked::Stopped);
+        }
+        if step > 0 && self.z.upper {
+            return Err(Blocked::LimitZ { end: Direction::Plus });
+        }
+        if step < 0 && self.z.lower {
+            return Err(Blocked::LimitZ { end: Direction::Minus });
+        }
+        Ok(Pulse { z: step.signum(), ..pulse(StepPair { x: 0, y: 0 }) })
     }
 
     /// Lets the power of a laser through, unless the machine is stopped.

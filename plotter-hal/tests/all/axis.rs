@@ -397,3 +397,66 @@ fn with_the_stop_pressed_at_power_up_no_motor_of_a_machine_moves_until_the_reset
     dc.drive(drive(&gate, 1.0, -1.0), LATER).unwrap();
     assert_eq!(voltages(&analyser), [200, -200]);
 }
+
+/// A lift and a second motor of y beside the other two: each pulse goes to those that it is for.
+#[cfg(feature = "third-motor")]
+#[test]
+fn a_third_motor_takes_its_own_share() {
+    let analyser = Analyser::default();
+    let wires = |names: [&'static str; 2]| names.map(|name| analyser.wire(name));
+    let [x_step, x_dir] = wires(["X STEP", "X DIR"]);
+    let [y_step, y_dir] = wires(["Y STEP", "Y DIR"]);
+    let [z_step, z_dir] = wires(["Z STEP", "Z DIR"]);
+    let [second_step, second_dir] = wires(["Y2 STEP", "Y2 DIR"]);
+    let mut motors = StepperAxes::new(
+        A4988::new(Axis::X, x_step, x_dir, TIMING),
+        A4988::new(Axis::Y, y_step, y_dir, TIMING),
+    );
+    let mut lift = A4988::new(Axis::X, z_step, z_dir, TIMING).of_z();
+    let mut second = A4988::new(Axis::Y, second_step, second_dir, TIMING).as_second();
+    motors.start(Duration::ZERO).unwrap();
+    lift.start(Duration::ZERO).unwrap();
+    second.start(Duration::ZERO).unwrap();
+    let pulses = [
+        pulse(1, -1),
+        GATE.pass_z_step(1).unwrap(),
+        GATE.pass_apart(Axis::Y, [0, 1]).unwrap(),
+        GATE.pass_apart(Axis::Y, [-1, 0]).unwrap(),
+    ];
+    for (pulse, at) in pulses.into_iter().zip(1..) {
+        let at = LATER * at;
+        analyser.now.set(at);
+        motors.step(pulse, at).unwrap();
+        lift.step(pulse, at).unwrap();
+        second.step(pulse, at).unwrap();
+        while let Some(due) = [motors.due(), lift.due(), second.due()].into_iter().flatten().min() {
+            analyser.now.set(due);
+            motors.tick(due).unwrap();
+            lift.tick(due).unwrap();
+            second.tick(due).unwrap();
+        }
+    }
+    insta::assert_snapshot!(analyser.table(), @r"
+           0 ns  X STEP   0
+           0 ns  Y STEP   0
+           0 ns  Z STEP   0
+           0 ns  Y2 STEP  0
+     5000000 ns  X DIR    1
+     5000000 ns  Y DIR    0
+     5000000 ns  Y2 DIR   0
+     5000200 ns  X STEP   1
+     5000200 ns  Y STEP   1
+     5000200 ns  Y2 STEP  1
+     5001200 ns  X STEP   0
+     5001200 ns  Y STEP   0
+     5001200 ns  Y2 STEP  0
+    10000000 ns  Z DIR    1
+    10000200 ns  Z STEP   1
+    10001200 ns  Z STEP   0
+    15000000 ns  Y2 DIR   1
+    15000200 ns  Y2 STEP  1
+    15001200 ns  Y2 STEP  0
+    20000000 ns  Y STEP   1
+    20001000 ns  Y STEP   0
+    ");
+}

@@ -24,7 +24,8 @@ use core::fmt::{self, Write as _};
 ///
 /// None but those of memory, as with `write!`.
 pub fn stepper_plotter(machine: &Machine, dialect: Dialect) -> Result<String, fmt::Error> {
-    let settings = StepperPlotterSettings::of(machine, dialect);
+    let settings = StepperPlotterSettings::of(machine, dialect).with_third_motor_of(machine);
+    let has_third = settings.z.is_some() || settings.second.is_some();
     let mut text = String::new();
     writeln!(text, "/// A plotter with stepper motors, from its file.\n{ALLOWED}pub mod stepper_plotter {{")?;
     writeln!(text, "use core::time::Duration;\nuse plotter_motion::firmware::stepper_plotter::*;")?;
@@ -32,6 +33,9 @@ pub fn stepper_plotter(machine: &Machine, dialect: Dialect) -> Result<String, fm
     writeln!(text, "use plotter_motion::homing::HomingAxis;\nuse plotter_motion::kinematics::Backlash;")?;
     writeln!(text, "use plotter_motion::planner::{{self, AccelLimit}};")?;
     writeln!(text, "use plotter_motion::{{PathMode, PlannerSettings}};")?;
+    if has_third {
+        writeln!(text, "use plotter_motion::Axis;")?;
+    }
     writeln!(
         text,
         "/// Bits a second of its line.\npub const BAUD: u32 = {};",
@@ -48,12 +52,13 @@ pub fn stepper_plotter(machine: &Machine, dialect: Dialect) -> Result<String, fm
         settings.laser
     )?;
     let modes = match (settings.is_plain(), settings.laser) {
+        _ if has_third => "ThreeAxes",
         (true, false) => "ExactPen",
         (true, true) => "ExactOnly",
         (false, _) => "AllModes",
     };
     let pens = match settings.pen {
-        PenConvention::Spindle if !settings.laser => "SpindlePen",
+        PenConvention::Spindle if !settings.laser && !has_third => "SpindlePen",
         _ => "AnyPen",
     };
     let host = match dialect {
@@ -83,6 +88,7 @@ fn constant(settings: &StepperPlotterSettings) -> String {
             ("accel_limit", "AccelLimit"),
             ("pen", "PenConvention"),
             ("command", "LaserCommand"),
+            ("axis", "Axis"),
         ],
     );
     for (name, duration) in [("pen_settle", settings.pen_settle), ("gather", settings.gather)] {
@@ -90,5 +96,13 @@ fn constant(settings: &StepperPlotterSettings) -> String {
         text =
             text.replace(&format!("{name}: {duration:?}"), &format!("{name}: Duration::from_nanos({nanos})"));
     }
-    text
+    // That of a third axis has no convention.
+    text = text
+        .replace("pen: PenConvention::Some(", "pen: Some(")
+        .replace("pen: PenConvention::None", "pen: None");
+    // A firmware with two axes is built without the fields of a third motor, or with them.
+    match text.strip_suffix(", z: None, second: None }") {
+        Some(fields) => format!("plotter_motion::two_axes!({fields} }})"),
+        None => text,
+    }
 }

@@ -80,6 +80,7 @@ impl Machine {
                 check_stepper_motor(&config)?;
                 check_stepper(&config.x, &X, config.area.width_mm, &config)?;
                 check_stepper(&config.y, &Y, config.area.height_mm, &config)?;
+                check_third_axis(&config)?;
             }
         }
         Ok(Self { config })
@@ -285,6 +286,26 @@ fn check_stepper_motor(config: &MachineConfig) -> Result<(), ConfigError> {
         (Bound::LessThan, motor.holding_n_m),
         "N m",
         "the torque of the motor (holding_n_m), or it never starts",
+    )
+}
+
+fn check_third_axis(config: &MachineConfig) -> Result<(), ConfigError> {
+    /// Greatest rate of a motor, pulses/s: what a controller's clock of microseconds gives out evenly.
+    const MOST_HZ: f64 = 1e5;
+    let z = &config.z;
+    if !z.enabled {
+        return Ok(());
+    }
+    for (key, height_mm) in [("z.up_mm", z.up_mm), ("z.down_mm", z.down_mm)] {
+        let remedy = "the axis goes no higher: z.travel_mm";
+        demand(key, height_mm, (Bound::AtMost, z.travel_mm), "mm", remedy)?;
+    }
+    demand(
+        "z.speed_mm_s",
+        z.speed_mm_s,
+        (Bound::AtMost, MOST_HZ / z.steps_per_mm),
+        "mm/s",
+        "a controller makes 100000 pulses/s at most: be slower, or make z.steps_per_mm less",
     )
 }
 

@@ -2,8 +2,8 @@
 
 use super::{
     BeltConfig, DriveChoice, HomingConfig, KinematicsChoice, KinematicsConfig, LaserConfig, MachineName,
-    PenConfig, PlannerConfig, PointToPointConfig, SheetConfig, StepperConfig, TransmissionConfig,
-    VectorizeConfig,
+    PenConfig, PlannerConfig, PointToPointConfig, SecondMotorConfig, SheetConfig, StepperConfig,
+    TransmissionConfig, VectorizeConfig, ZConfig,
 };
 use crate::plant::StepperSettings;
 
@@ -41,6 +41,10 @@ pub struct MachineConfig {
     pub laser: LaserConfig,
     /// How it finds the ends of its axes.
     pub homing: HomingConfig,
+    /// A third axis.
+    pub z: ZConfig,
+    /// Two motors on an axis.
+    pub second_motor: SecondMotorConfig,
     /// Its motors, both alike, as they are simulated.
     pub stepper_motor: StepperSettings,
     /// How pictures become strokes for it.
@@ -470,6 +474,8 @@ impl Default for MachineConfig {
             pen: PenConfig::default(),
             laser: LaserConfig::default(),
             homing: HomingConfig::default(),
+            z: ZConfig::default(),
+            second_motor: SecondMotorConfig::default(),
             stepper_motor: StepperSettings::default(),
             vectorize: VectorizeConfig::default(),
             sheet: SheetConfig::default(),

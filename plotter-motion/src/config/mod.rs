@@ -39,7 +39,7 @@ pub use name::{FileName, MachineName, ShortText};
 pub use sheet::SheetConfig;
 pub use stepper::{
     AccelChoice, DriveChoice, HomingConfig, LaserConfig, PathChoice, PenConfig, PenLift, PlannerConfig,
-    StepperConfig,
+    SecondMotorChoice, SecondMotorConfig, StepperConfig, ZConfig,
 };
 #[cfg(feature = "toml")]
 pub use toml_error::{TomlError, TomlPlace};

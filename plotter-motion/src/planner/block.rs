@@ -17,6 +17,9 @@ pub(super) enum Kind {
     Jog,
     Arc,
     Parabola,
+    /// An arc that rises or falls on its way.
+    #[cfg(feature = "third-motor")]
+    Helix,
     /// A standstill of `length` seconds.
     Dwell,
     SelectPen,
@@ -33,6 +36,9 @@ pub(super) enum Bend {
     /// Sine of half of its turn; the component along the first motor's axis of the direction towards its
     /// inside; and the square of the speed as of an arc.
     Parabola { lean: f32, inwards: f32, form2: f32 },
+    /// Greatest acceleration along it, its turn, 0 of a line, and the square of the greatest speed.
+    #[cfg(feature = "third-motor")]
+    Rising { accel: f32, sweep_rad: f32, form2: f32 },
 }
 
 /// A stretch of path with the squares of its speeds, or something that is done at a standstill.
@@ -90,6 +96,8 @@ impl Block {
     ) -> Self {
         let (kind, centre) = match shape {
             Shape::Line => (Kind::Line, to),
+            #[cfg(feature = "third-motor")]
+            Shape::Arc { centre, .. } if matches!(bend, Bend::Rising { .. }) => (Kind::Helix, centre),
             Shape::Arc { centre, .. } => (Kind::Arc, centre),
             Shape::Parabola { control } => (Kind::Parabola, control),
         };
@@ -97,6 +105,8 @@ impl Block {
             Bend::Line { accel } => (0.0, accel, 0.0),
             Bend::Arc { sweep_rad, form2 } => (sweep_rad, 0.0, 1.0 / form2),
             Bend::Parabola { lean, inwards, form2 } => (lean, inwards, 1.0 / form2),
+            #[cfg(feature = "third-motor")]
+            Bend::Rising { accel, sweep_rad, form2 } => (sweep_rad, accel, 1.0 / form2),
         };
         let (feed_mm_s, to_centre) = (root(feed2), to.way_to(&centre));
         Self {
@@ -133,6 +143,10 @@ impl Block {
 
     /// Whether it moves.
     pub(super) fn is_path(&self) -> bool {
+        #[cfg(feature = "third-motor")]
+        if self.kind == Kind::Helix {
+            return true;
+        }
         matches!(self.kind, Kind::Line | Kind::Jog | Kind::Arc | Kind::Parabola)
     }
 
@@ -219,6 +233,8 @@ impl Block {
         let centre = self.to.after(self.to_centre);
         let shape = match self.kind {
             Kind::Arc => Shape::Arc { centre, sweep_rad: self.form },
+            #[cfg(feature = "third-motor")]
+            Kind::Helix => Shape::Arc { centre, sweep_rad: self.form },
             Kind::Parabola => Shape::Parabola { control: centre },
             _ => Shape::Line,
         };
@@ -229,6 +245,8 @@ impl Block {
             feed_mm_s: self.feed_mm_s,
             pen: self.pen,
             laser_power: self.power,
+            #[cfg(feature = "third-motor")]
+            to_z_mm: None,
         }
     }
 }

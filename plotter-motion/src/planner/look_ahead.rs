@@ -5,6 +5,9 @@ use super::front::Front;
 use super::limits::{Limits, Shares, Wish};
 use super::modes::{AllModes, Keep as _, Modes};
 use super::ring::{Ring, narrow};
+#[cfg(feature = "third-motor")]
+use super::rise::{Heights, ZLimits};
+
 use super::time_law::TimeLaw;
 use super::{Action, PlanError, PlannerSettings};
 use crate::extremes::smaller;
@@ -58,6 +61,8 @@ pub struct Planner<const N: usize, M: Modes = AllModes> {
     hold: bool,
     /// The course that was given out last, whose greatest speed changes with the overrides.
     under_way: M::Kept<Wish>,
+    #[cfg(feature = "third-motor")]
+    heights: M::Rise<Heights<N>>,
 }
 
 impl<const N: usize> Planner<N> {
@@ -106,6 +111,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             time_law: TimeLaw::over(&limits),
             hold: false,
             under_way: M::Kept::default(),
+            #[cfg(feature = "third-motor")]
+            heights: M::Rise::default(),
         }
     }
 
@@ -118,7 +125,11 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// Whether [`Planner::push`] takes another operation now.
     #[must_use]
     pub fn has_room(&self) -> bool {
-        self.ring.room() >= Front::<M>::most_blocks(&self.limits.settings) && !self.front.has_chords()
+        // Where z lifts the pen, that is a block more.
+        let most = Front::<M>::most_blocks(&self.limits.settings);
+        #[cfg(feature = "third-motor")]
+        let most = most + usize::from(self.front.rise.get().is_some_and(|rise| rise.pen_mm.is_some()));
+        self.ring.room() >= most && !self.front.has_chords()
     }
 
     /// Whether no action is left, also after a feed hold. Operations that are held back come after
@@ -150,7 +161,26 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             return Err(PlanError::Full);
         }
         self.stale = true;
-        self.front.push(op, &self.limits, &mut self.ring)
+        #[cfg(feature = "third-motor")]
+        if M::Z {
+            self.lift_for(&op)?;
+        }
+        #[cfg(feature = "third-motor")]
+        let before = self.ring.len();
+        let pushed = self.front.push(op, &self.limits, &mut self.ring);
+        #[cfg(feature = "third-motor")]
+        self.note_heights(before);
+        pushed
+    }
+
+    /// All blocks behind the first `before` end at the height that the path has come to.
+    #[cfg(feature = "third-motor")]
+    fn note_heights(&mut self, before: usize) {
+        if let (Some(heights), Some(rise)) = (self.heights.get_mut(), self.front.rise.get()) {
+            for _ in before..self.ring.len() {
+                heights.push(rise.at_mm);
+            }
+        }
     }
 
     /// Takes a travel at this speed, mm/s, or at the travel speed if that is lower.
@@ -164,7 +194,12 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             return Err(PlanError::Full);
         }
         self.stale = true;
-        self.front.jog(&to, speed_mm_s, &self.limits, &mut self.ring)
+        #[cfg(feature = "third-motor")]
+        let before = self.ring.len();
+        let pushed = self.front.jog(&to, speed_mm_s, &self.limits, &mut self.ring);
+        #[cfg(feature = "third-motor")]
+        self.note_heights(before);
+        pushed
     }
 
     /// Multiplies the requested speeds by these shares from now on, with the pen down and up: a person at the
@@ -235,7 +270,15 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// [`PlanError::Full`] when there is no room for it.
     pub fn finish(&mut self) -> Result<(), PlanError> {
         self.rest()?;
+        #[cfg(feature = "third-motor")]
+        if M::Z {
+            self.lift_for(&PlotOp::Travel { to: self.position() })?;
+        }
+        #[cfg(feature = "third-motor")]
+        let before = self.ring.len();
         self.front.lift(&self.limits, &mut self.ring);
+        #[cfg(feature = "third-motor")]
+        self.note_heights(before);
         Ok(())
     }
 
@@ -250,7 +293,11 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             return Err(PlanError::Full);
         }
         self.stale = true;
+        #[cfg(feature = "third-motor")]
+        let before = self.ring.len();
         self.front.end_run(&self.limits, &mut self.ring);
+        #[cfg(feature = "third-motor")]
+        self.note_heights(before);
         Ok(())
     }
 
@@ -259,6 +306,10 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     pub fn clear(&mut self, position: Point) {
         self.front.restart(position);
         self.ring.clear();
+        #[cfg(feature = "third-motor")]
+        if let Some(heights) = self.heights.get_mut() {
+            heights.clear();
+        }
         self.time_law = TimeLaw::over(&self.limits);
         self.hold = false;
     }
@@ -351,16 +402,24 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         if self.is_held() {
             return None;
         }
+        #[cfg(feature = "third-motor")]
+        let before = self.ring.len();
         if self.front.has_chords() && self.front.take_chords(&self.limits, &mut self.ring) {
             self.stale = true;
         }
+        #[cfg(feature = "third-motor")]
+        self.note_heights(before);
         let head = self.ring.get(0)?;
         let action = match head.kind {
             Kind::Line | Kind::Jog | Kind::Arc | Kind::Parabola => Action::Course(head.course()),
+            #[cfg(feature = "third-motor")]
+            Kind::Helix => Action::Course(head.course()),
             Kind::Dwell => Action::Dwell(duration(f64::from(head.length())).unwrap_or_default()),
             Kind::SelectPen => Action::SelectPen(head.number()),
             Kind::NewPage => Action::NewPage,
         };
+        #[cfg(feature = "third-motor")]
+        let (action, head) = (self.rising(action), self.ring.get(0)?);
         if !self.time_law.begin_s_curve(head) {
             if let Some(under_way) = self.under_way.get_mut() {
                 *under_way = head.wish();
@@ -375,6 +434,148 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             }
         }
         Some(action)
+    }
+}
+
+#[cfg(feature = "third-motor")]
+impl<const N: usize, M: Modes> Planner<N, M> {
+    /// What the third axis can do: nothing until this is told. Only with [`ThreeAxes`](super::ThreeAxes).
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError::Setting`] for a limit that no motion can be planned with, [`PlanError::Mode`] where
+    /// there is no third axis, or a jerk.
+    pub fn set_z_limits(&mut self, limits: &ZLimits) -> Result<(), PlanError> {
+        limits.check()?;
+        if !M::Z || self.limits.settings.jerk_mm_s3.is_some() {
+            return Err(PlanError::Mode { quantity: if M::Z { "jerk_mm_s3" } else { "z" } });
+        }
+        if let Some(rise) = self.front.rise.get_mut() {
+            rise.set_limits(limits);
+        }
+        Ok(())
+    }
+
+    /// Takes an operation at whose end the tool stands at another height: a line, or an arc, along which z
+    /// changes evenly, or z alone where the operation names the place that the path has come to. The speed
+    /// that it asks for is one in space.
+    ///
+    /// The limits of [`Planner::set_z_limits`] hold on the way. Where the path goes on with another slope,
+    /// z's speed jumps by no more than its acceleration makes within a step; before and after z alone the
+    /// machine stands. No vertex is rounded.
+    ///
+    /// ```
+    /// # use plotter_motion::{Planner, PlannerSettings, PlotOp, Point};
+    /// # use plotter_motion::planner::{Action, PlanError, ThreeAxes, ZLimits};
+    /// let mut planner = Planner::<16, ThreeAxes>::with_modes(PlannerSettings::default())?;
+    /// planner.set_z_limits(&ZLimits { speed_mm_s: 5.0, accel_mm_s2: 50.0, step_mm: 0.0025 })?;
+    /// // 10 mm of z alone at 5 mm/s, with 0.1 s and 0.25 mm to speed up and to brake
+    /// planner.push_rising(PlotOp::Travel { to: Point::ORIGIN }, 10.0)?;
+    /// planner.finish()?;
+    /// let mut time_s = 0.0;
+    /// while let Some(action) = planner.next_action() {
+    ///     match action {
+    ///         Action::Course(course) => assert_eq!((course.to_z_mm, course.length_mm), (Some(10.0), 10.0)),
+    ///         Action::Phase(phase) => time_s += phase.duration_s,
+    ///         _ => {}
+    ///     }
+    /// }
+    /// assert!((time_s - 2.1).abs() < 0.01, "{time_s}");
+    /// # Ok::<(), PlanError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError::Mode`] where there is no third axis, [`PlanError::Unknown`] for an operation that goes
+    /// nowhere, and as [`Planner::push`].
+    pub fn push_rising(&mut self, op: PlotOp, to_z_mm: f64) -> Result<(), PlanError> {
+        self.rise(op, to_z_mm, None)
+    }
+
+    /// As [`Planner::push_jog`], to another height.
+    ///
+    /// # Errors
+    ///
+    /// As [`Planner::push_rising`].
+    pub fn jog_rising(&mut self, to: Point, to_z_mm: f64, speed_mm_s: f64) -> Result<(), PlanError> {
+        self.rise(PlotOp::Travel { to }, to_z_mm, Some(speed_mm_s))
+    }
+
+    fn rise(&mut self, op: PlotOp, to_z_mm: f64, jog_mm_s: Option<f64>) -> Result<(), PlanError> {
+        if !self.has_room() {
+            return Err(PlanError::Full);
+        }
+        self.rise_with_room(op, to_z_mm, jog_mm_s)
+    }
+
+    fn rise_with_room(&mut self, op: PlotOp, to_z_mm: f64, jog_mm_s: Option<f64>) -> Result<(), PlanError> {
+        let Some(rise) = self.front.rise.get().filter(|rise| rise.has_limits()) else {
+            return Err(PlanError::Mode { quantity: "z" });
+        };
+        #[expect(clippy::float_cmp, reason = "the same height, told again")]
+        if rise.at_mm == to_z_mm {
+            return match (op, jog_mm_s) {
+                (PlotOp::Travel { to }, Some(speed_mm_s)) => self.push_jog(to, speed_mm_s),
+                _ => self.push(op),
+            };
+        }
+        let feed2 = Front::<M>::checked_rising(&op, to_z_mm, jog_mm_s, &self.limits)?;
+        self.stale = true;
+        let before = self.ring.len();
+        self.front.before_rise(&op, jog_mm_s.is_some(), &self.limits, &mut self.ring);
+        self.note_heights(before);
+        let before = self.ring.len();
+        self.front.push_rising(op, to_z_mm, feed2, &self.limits, &mut self.ring);
+        self.note_heights(before);
+        Ok(())
+    }
+
+    /// From here on z lifts the pen: to these heights with the pen up and down, mm, at a standstill of the
+    /// other two. The machine stands where the pen is up.
+    pub fn set_pen_heights(&mut self, up_mm: f64, down_mm: f64) {
+        if let Some(rise) = self.front.rise.get_mut() {
+            rise.pen_mm = Some([up_mm, down_mm]);
+        }
+    }
+
+    /// With the height at which it ends.
+    fn rising(&mut self, action: Action) -> Action {
+        let Some(heights) = self.heights.get_mut() else { return action };
+        let to_z_mm = heights.first();
+        heights.pop();
+        match action {
+            Action::Course(course) => Action::Course(super::Course { to_z_mm, ..course }),
+            _ => action,
+        }
+    }
+
+    /// Brings the pen to the height of an operation, where z lifts it.
+    fn lift_for(&mut self, op: &PlotOp) -> Result<(), PlanError> {
+        let Some([up_mm, down_mm]) = self.front.rise.get().and_then(|rise| rise.pen_mm) else {
+            return Ok(());
+        };
+        let height_mm = match op {
+            PlotOp::Travel { .. } | PlotOp::SelectPen { .. } | PlotOp::NewPage => up_mm,
+            PlotOp::Draw { .. } | PlotOp::DrawArc { .. } => down_mm,
+            _ => return Ok(()),
+        };
+        if self.height_mm().to_bits() == height_mm.to_bits() {
+            return Ok(());
+        }
+        self.rise_with_room(PlotOp::Travel { to: self.position() }, height_mm, None)
+    }
+
+    /// The height at the end of what was pushed, mm.
+    #[must_use]
+    pub fn height_mm(&self) -> f64 {
+        self.front.rise.get().map_or(0.0, |rise| rise.at_mm)
+    }
+
+    /// The tool stands at this height: after [`Planner::clear`], or before anything is pushed.
+    pub fn stand_at_height(&mut self, height_mm: f64) {
+        if let Some(rise) = self.front.rise.get_mut() {
+            rise.at_mm = height_mm;
+        }
     }
 }
 

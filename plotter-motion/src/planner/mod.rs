@@ -25,6 +25,8 @@ mod modes;
 mod phase;
 mod ramps;
 mod ring;
+#[cfg(feature = "third-motor")]
+mod rise;
 mod rounding;
 mod s_curve;
 mod settings;
@@ -36,7 +38,11 @@ pub use error::PlanError;
 pub use junction::junction_speed;
 pub use look_ahead::Planner;
 pub(crate) use modes::Keep;
+#[cfg(feature = "third-motor")]
+pub use modes::ThreeAxes;
 pub use modes::{AllModes, ExactOnly, ExactPen, Modes};
 pub(crate) use modes::{Here, Nowhere, Part};
 pub use phase::{Action, Course, Phase, Shape};
+#[cfg(feature = "third-motor")]
+pub use rise::ZLimits;
 pub use settings::{AccelLimit, PathMode, PlannerSettings};

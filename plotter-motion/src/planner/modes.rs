@@ -19,6 +19,11 @@ pub trait Modes: sealed::Sealed {
     /// Memory that only those need.
     #[doc(hidden)]
     type Kept<T: Part>: Keep<T>;
+    /// Whether a third axis is there, and the memory that only that needs.
+    #[doc(hidden)]
+    const Z: bool = false;
+    #[doc(hidden)]
+    type Rise<T: Part>: Keep<T>;
     /// Memory for one thing, or for another that only those need.
     #[doc(hidden)]
     type Either<A: Part, B: Part>: Choice<A, B>;
@@ -38,6 +43,12 @@ pub struct AllModes;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ExactOnly;
 
+/// [`AllModes`] without S-curves, of a machine with a third axis: a tool that is raised and lowered by a motor
+/// of its own, along with the other two. See [`Planner::push_rising`](super::Planner::push_rising).
+#[cfg(feature = "third-motor")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct ThreeAxes;
+
 /// [`ExactOnly`], of a machine without a laser. The firmware of the stepper plotter takes another kilobyte
 /// less with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -47,6 +58,17 @@ impl Modes for AllModes {
     const ALL: bool = true;
     const LASER: bool = true;
     type Kept<T: Part> = Here<T>;
+    type Rise<T: Part> = Nowhere<T>;
+    type Either<A: Part, B: Part> = Either<A, B>;
+}
+
+#[cfg(feature = "third-motor")]
+impl Modes for ThreeAxes {
+    const ALL: bool = true;
+    const LASER: bool = true;
+    const Z: bool = true;
+    type Kept<T: Part> = Here<T>;
+    type Rise<T: Part> = Here<T>;
     type Either<A: Part, B: Part> = Either<A, B>;
 }
 
@@ -54,6 +76,7 @@ impl Modes for ExactOnly {
     const ALL: bool = false;
     const LASER: bool = true;
     type Kept<T: Part> = Nowhere<T>;
+    type Rise<T: Part> = Nowhere<T>;
     type Either<A: Part, B: Part> = First<A, B>;
 }
 
@@ -61,12 +84,15 @@ impl Modes for ExactPen {
     const ALL: bool = false;
     const LASER: bool = false;
     type Kept<T: Part> = Nowhere<T>;
+    type Rise<T: Part> = Nowhere<T>;
     type Either<A: Part, B: Part> = First<A, B>;
 }
 
 mod sealed {
     pub trait Sealed: Clone + core::fmt::Debug + PartialEq {}
     impl Sealed for super::AllModes {}
+    #[cfg(feature = "third-motor")]
+    impl Sealed for super::ThreeAxes {}
     impl Sealed for super::ExactOnly {}
     impl Sealed for super::ExactPen {}
 }

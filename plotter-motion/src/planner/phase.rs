@@ -46,6 +46,10 @@ pub struct Course {
     pub feed_mm_s: f32,
     /// Power of the laser at that speed, in 65535ths.
     pub laser_power: u16,
+    /// At which height it ends, mm; none of a machine with two axes. Along the course z changes evenly, and
+    /// `length_mm` is the length in space.
+    #[cfg(feature = "third-motor")]
+    pub to_z_mm: Option<f64>,
 }
 
 /// A time along the current course, with constant jerk.

@@ -6,7 +6,7 @@ use super::slice::{Slice, speed_fixed};
 use crate::extremes::greatest;
 use crate::geom::single;
 use crate::kinematics::Kinematics;
-use crate::planner::{AllModes, Modes};
+use crate::planner::{AllModes, Keep as _, Modes};
 use crate::{
     Bresenham, Machine, Pen, Point, StepPair, StepPoint,
     planner::{Action, Course, Phase},
@@ -78,6 +78,9 @@ impl StepGenSettings {
 pub enum MotorEvent {
     /// A step of either motor or of both.
     Step(StepPair),
+    /// A step of the third motor: 1 upwards, -1 downwards.
+    #[cfg(feature = "third-motor")]
+    StepZ(i8),
     /// The pen is lowered or lifted.
     Pen(Pen),
     /// The laser's power from here on, in 65535ths.
@@ -181,6 +184,41 @@ pub struct StepGen<K, M: Modes = AllModes> {
     /// The laser's power that was given out last, 0 at a standstill.
     laser: u16,
     waiting: [Option<TimedEvent>; 2],
+    z: M::Rise<ZSteps>,
+}
+
+/// The third motor: its steps come evenly along a course, whatever the others do.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct ZSteps {
+    steps_per_mm: f64,
+    /// Where it has been stepped to.
+    at: i32,
+    up: bool,
+    due: Option<Due>,
+    /// When its last step was.
+    tick: u64,
+}
+
+#[cfg(feature = "third-motor")]
+impl ZSteps {
+    /// Goes to a height along a course of this length, mm with 32 bits of fraction.
+    fn begin(&mut self, to_mm: f64, length: i64) {
+        let to = crate::toolpath::from_mm(to_mm, self.steps_per_mm);
+        self.up = to > self.at;
+        self.due = Due::new(0, length, to.abs_diff(self.at));
+    }
+
+    /// Its step that is due.
+    fn step(&mut self, tick: u64) -> Option<TimedEvent> {
+        let left = self.due.as_mut()?.advance();
+        if !left {
+            self.due = None;
+        }
+        let way = if self.up { 1 } else { -1 };
+        self.at = self.at.saturating_add(way.into());
+        self.tick = tick;
+        Some(TimedEvent { tick, event: MotorEvent::StepZ(way) })
+    }
 }
 
 /// The distances at which the steps of a chord are due: evenly spaced, the first half a space after its
@@ -263,6 +301,7 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
             interval: 0,
             laser: 0,
             waiting: [None; 2],
+            z: M::Rise::default(),
         }
     }
 
@@ -289,6 +328,15 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
         self.line = Bresenham::new(steps, steps);
         (self.due, self.late, self.running, self.laser) = (None, false, None, 0);
         (self.put_off, self.waiting) = (None, [None; 2]);
+        if let Some(z) = self.z.get_mut() {
+            z.due = None;
+        }
+    }
+
+    /// Whether steps of the course are left.
+    #[inline(always)] // one comparison where there are two axes
+    fn owes_steps(&self) -> bool {
+        self.due.is_some() || self.z.get().is_some_and(|z| z.due.is_some())
     }
 
     /// The pen has been lifted by somebody else, while the motors stand: what draws next lowers it first.
@@ -311,7 +359,7 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
         if self.running.is_some() || self.late || self.waiting.iter().any(Option::is_some) {
             return Err(Busy);
         }
-        if self.due.is_some() && !matches!(action, Action::Phase(_)) {
+        if self.owes_steps() && !matches!(action, Action::Phase(_)) {
             // What rounding has left of the course before comes first.
             self.late = true;
             self.put_off = Some(action);
@@ -347,10 +395,30 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
         }
         loop {
             let running = self.running.as_mut()?;
+            #[cfg(feature = "third-motor")]
+            if M::Z
+                && let Some(z) = self.z.get_mut()
+                && let Some(at) = z.due.map(|due| due.at)
+                && self.due.is_none_or(|due| at <= due.at)
+            {
+                if let Some(at) = running.slice.tick_of::<M>(at, running.at.max(0), running.guess()) {
+                    // Where only z moves, its steps are those from which the next is guessed.
+                    if self.due.is_none() {
+                        running.step_at(at);
+                    }
+                    return z.step(running.slice.base.saturating_add_signed(at));
+                }
+                if !running.next_slice::<M>() {
+                    return self.end_phase();
+                }
+                continue;
+            }
             let Some(due) = self.due else { return self.end_phase() };
             if let Some(at) = running.slice.tick_of::<M>(due.at, running.at.max(0), running.guess()) {
                 running.step_at(at);
                 let tick = running.slice.base.saturating_add_signed(at);
+                // A step's time is to the nearest tick: no step comes before one of the third motor.
+                let tick = self.z.get().map_or(tick, |z| tick.max(z.tick));
                 let speed = if self.settings.laser && M::LASER { running.slice.speed::<M>(at) } else { 0 };
                 let power = self.power(speed);
                 let step = self.step(tick)?;
@@ -424,6 +492,12 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
     }
 
     fn late_step(&mut self) -> Option<TimedEvent> {
+        #[cfg(feature = "third-motor")]
+        if M::Z
+            && let Some(step) = self.z.get_mut().and_then(|z| z.step(self.now.tick))
+        {
+            return Some(step);
+        }
         if self.due.is_none() {
             self.late = false;
             let action = self.put_off.take()?;
@@ -463,6 +537,10 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
         self.at = course.to;
         self.chord_from = 0;
         self.next_chord();
+        #[cfg(feature = "third-motor")]
+        if let (Some(z), Some(to_mm)) = (self.z.get_mut(), course.to_z_mm) {
+            z.begin(to_mm, super::slice::fixed(course.length_mm, super::slice::FRACTION_BITS));
+        }
         // A course without length has no phase; its steps, if rounding has made one, are late.
         self.late = course.length_mm <= LATE_MM;
     }
@@ -474,6 +552,23 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
         let slice = Slice::new::<M>(&phase, self.seconds_per_tick, (tick, part), left);
         let at = i64::try_from(tick.saturating_sub(self.last_step)).map_or(0, |since| -since);
         self.running = Some(Running { phase, end, left, slice, at, interval: self.interval, change: 0 });
+    }
+}
+
+#[cfg(feature = "third-motor")]
+impl<K: Kinematics, M: Modes> StepGen<K, M> {
+    /// The third motor has so many steps to the millimetre, and stands at `steps`. Only with
+    /// [`ThreeAxes`](crate::planner::ThreeAxes).
+    pub fn set_z(&mut self, steps_per_mm: f64, steps: i32) {
+        if let Some(z) = self.z.get_mut() {
+            *z = ZSteps { steps_per_mm, at: steps, ..ZSteps::default() };
+        }
+    }
+
+    /// Where the third motor has been stepped to.
+    #[must_use]
+    pub fn z_steps(&self) -> i32 {
+        self.z.get().map_or(0, |z| z.at)
     }
 }
 

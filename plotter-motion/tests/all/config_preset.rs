@@ -23,7 +23,7 @@ const GANTRY: Preset = Preset {
 const STEPPER_PLOTTER: Preset = Preset {
     file: "stepper-plotter.toml",
     config: MachineConfig::stepper_plotter,
-    keys: (50, 5),
+    keys: (63, 5),
     repeats: "[y.stepper]",
 };
 
@@ -37,12 +37,12 @@ const MARKING_BOARD: Preset = Preset {
 const TEXTILE_PLOTTER: Preset = Preset {
     file: "textile-plotter.toml",
     config: MachineConfig::textile_plotter,
-    keys: (56, 5),
+    keys: (69, 5),
     repeats: "[y.stepper]",
 };
 
 const PLASMA_FOLLOWER: Preset =
-    Preset { file: "plasma-follower.toml", config: plasma_follower, keys: (50, 5), repeats: "[y.stepper]" };
+    Preset { file: "plasma-follower.toml", config: plasma_follower, keys: (63, 5), repeats: "[y.stepper]" };
 
 /// The camera and the torch are chosen, not documented: the code has no such machine, so it is said here.
 fn plasma_follower() -> MachineConfig {

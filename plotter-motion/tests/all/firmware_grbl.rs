@@ -8,6 +8,7 @@ use plotter_motion::firmware::stepper_plotter::{
     Dialect, Grbl, SpindlePen, StartupLines, StepperPlotterSettings, StoredSettings,
 };
 use plotter_motion::gcode::PenConvention;
+use plotter_motion::homing::Homed;
 use plotter_motion::{Axis, Direction, LimitSwitches, Point, SafetyGate, StepPoint, planner::ExactPen};
 use stepper_bench::Bench;
 
@@ -471,4 +472,41 @@ fn a_small_grbl_names_what_it_leaves_out() {
         "Grbl 1.1h ['$' for help]|[VER:1.1h.20190830:plotter-motion]|[OPT:VZT*$IEW,15,128]|ok|error:20|error:20|ok|error:3|ok|\
          $N0=|$N1=|ok|error:3|error:3|[MSG:Restoring defaults]|ok|Grbl 1.1h ['$' for help]"
     );
+}
+
+#[test]
+fn homing_warns_of_an_axis_that_is_not_as_it_was_said_to_be() {
+    let mut bench = homing_bench();
+    assert_eq!((bench.plotter.homed(), bench.plotter.off_steps()), (None, None));
+    assert_eq!(bench.ask("$H\n"), "ok\r\n");
+    let homed = Homed { x_steps: 34_000, y_steps: 28_000 };
+    assert_eq!((bench.plotter.homed(), bench.plotter.off_steps()), (Some(homed), None));
+    // The motors lose steps, which the next homing finds; the axes are as long as before.
+    bench.ask("G0 X50 Y50\n");
+    (bench.carriage[0], bench.carriage[1]) = (bench.carriage[0] - 12, bench.carriage[1] + 5);
+    assert_eq!(bench.ask("$H\n"), "ok\r\n");
+    assert_eq!(bench.plotter.off_steps(), Some(StepPoint::new(-12, 5)));
+    // Half a millimetre is 43.8 steps.
+    bench.length = [34_040, 27_900];
+    assert_eq!(bench.ask("$H\n"), "[MSG:Warning: y is 27900 steps long, was 28000]\r\nok\r\n");
+    // Something lies on the rails of x: (27088 - 88) / 87.58 mm can be reached of 380.
+    bench.length = [27_088, 27_900];
+    assert_eq!(bench.ask("$H\n"), "[MSG:Warning: x is 27088 steps long, was 34040]\r\nok\r\n");
+    assert_eq!(bench.ask("$H\n"), "[MSG:Warning: x reaches 308.290 mm, $130=380]\r\nok\r\n");
+    assert_eq!(bench.ask("$130=308\n$H\n"), "ok\r\nok\r\n");
+}
+
+#[test]
+fn what_an_earlier_homing_has_measured_is_kept_by_the_firmware() {
+    let homed = Homed { x_steps: 33_900, y_steps: 28_020 };
+    let mut bench = homing_bench();
+    bench.plotter.set_homed(Homed::from_bytes(&homed.to_bytes()).unwrap());
+    assert_eq!(bench.plotter.homed(), Some(homed));
+    assert_eq!(bench.ask("$H\n"), "[MSG:Warning: x is 34000 steps long, was 33900]\r\nok\r\n");
+    for at in 0..Homed::BYTES {
+        let mut bytes = homed.to_bytes();
+        bytes[at] ^= 0x10;
+        assert_eq!(Homed::from_bytes(&bytes), None, "byte {at}");
+        assert_eq!(Homed::from_bytes(&homed.to_bytes()[..at]), None);
+    }
 }

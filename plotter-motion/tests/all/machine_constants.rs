@@ -2,7 +2,7 @@
 //!
 //! The texts lie in `tests/data/machine_constants`; `UPDATE_GOLDEN=1` writes them anew.
 
-use plotter_motion::config::{AccelChoice, ControllerChoice, PathChoice, PenLift};
+use plotter_motion::config::{AccelChoice, ControllerChoice, PathChoice, PenLift, SecondMotorChoice};
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
 use plotter_motion::{LimitSwitches, Machine, MachineConfig, SafetyGate, build, control, firmware};
 
@@ -25,6 +25,10 @@ mod smooth {
 #[allow(dead_code, unreachable_pub, reason = "a firmware uses it all")]
 mod height {
     include!("../data/machine_constants/height.rs");
+}
+#[allow(dead_code, unreachable_pub, reason = "a firmware uses it all")]
+mod three {
+    include!("../data/machine_constants/three.rs");
 }
 #[allow(dead_code, unreachable_pub, reason = "a firmware uses it all")]
 mod mdraw {
@@ -50,6 +54,14 @@ fn every_mode() -> Machine {
     })
 }
 
+/// With a third axis that is homed, and two motors on y.
+fn three_axes() -> Machine {
+    machine(MachineConfig::stepper_plotter(), |config| {
+        (config.z.enabled, config.z.homes, config.z.lifts_pen) = (true, true, true);
+        (config.second_motor.axis, config.second_motor.offset_mm) = (SecondMotorChoice::Y, -0.5);
+    })
+}
+
 fn lifted_by_height() -> Machine {
     machine(MachineConfig::stepper_plotter(), |config| config.pen.lifted_by = PenLift::Height)
 }
@@ -65,7 +77,8 @@ fn is_golden(name: &str, text: &str) {
 
 fn is_settings_of(name: &str, machine: &Machine, dialect: Dialect, settings: &StepperPlotterSettings) {
     is_golden(name, &build::stepper_plotter(machine, dialect).unwrap());
-    assert_eq!(*settings, StepperPlotterSettings::of(machine, dialect), "{name}");
+    let expected = StepperPlotterSettings::of(machine, dialect).with_third_motor_of(machine);
+    assert_eq!(*settings, expected, "{name}");
 }
 
 #[test]
@@ -107,6 +120,8 @@ fn a_stepper_plotter_is_what_its_file_says_in_every_mode() {
     is_settings_of("smooth", &every_mode(), Dialect::Grbl, &smooth::stepper_plotter::SETTINGS);
     is_settings_of("height", &lifted_by_height(), Dialect::Grbl, &height::stepper_plotter::SETTINGS);
     is_settings_of("mdraw", &documented, Dialect::MDraw, &mdraw::stepper_plotter::SETTINGS);
+    is_settings_of("three", &three_axes(), Dialect::Grbl, &three::stepper_plotter::SETTINGS);
+    assert_eq!(three::stepper_plotter::SETTINGS.second.unwrap().offset_steps, -44); // 0.5 mm of 87.58
     const { assert!(smooth::stepper_plotter::LASER && !plain::stepper_plotter::LASER) };
     // The types can be made of them.
     let gate = || SafetyGate::new(LimitSwitches::RELEASED, false);
@@ -120,6 +135,10 @@ fn a_stepper_plotter_is_what_its_file_says_in_every_mode() {
     );
     assert!(
         height::stepper_plotter::StepperPlotter::from_checked(&height::stepper_plotter::CHECKED, gate())
+            .is_ok()
+    );
+    assert!(
+        three::stepper_plotter::StepperPlotter::from_checked(&three::stepper_plotter::CHECKED, gate())
             .is_ok()
     );
     assert!(

@@ -29,6 +29,8 @@ mod firmware_grbl_table;
 mod firmware_grbl_waits;
 mod firmware_mdraw;
 mod firmware_two_tasks;
+#[cfg(feature = "third-motor")]
+mod firmware_z;
 mod gcode_interpreter;
 #[cfg(feature = "alloc")]
 mod gcode_kinds;

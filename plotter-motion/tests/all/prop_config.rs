@@ -46,10 +46,10 @@ static_n_m = 1.3e-3
 "#;
 
 /// A height.
-const MAY_BE_NEGATIVE: &str = "pen.down_z_mm";
+const MAY_BE_NEGATIVE: [&str; 2] = ["pen.down_z_mm", "second_motor.offset_mm"];
 
 /// Numeric keys that the machine has once.
-const OF_THE_MACHINE: [&str; 61] = [
+const OF_THE_MACHINE: [&str; 70] = [
     "schema",
     "area.width_mm",
     "area.height_mm",
@@ -91,6 +91,15 @@ const OF_THE_MACHINE: [&str; 61] = [
     "homing.release_mm",
     "homing.known_travel_mm",
     "homing.max_travel_mm",
+    "z.steps_per_mm",
+    "z.speed_mm_s",
+    "z.accel_mm_s2",
+    "z.travel_mm",
+    "z.up_mm",
+    "z.down_mm",
+    "z.start_rate_hz",
+    "second_motor.offset_mm",
+    "second_motor.max_skew_mm",
     "stepper_motor.full_steps_per_turn",
     "stepper_motor.microsteps",
     "stepper_motor.holding_n_m",
@@ -205,7 +214,7 @@ fn is_out_of_range(outcome: &Result<Machine, TomlError>) -> bool {
 
 #[test]
 fn no_number_may_be_infinite_or_negative_or_none() {
-    for (key, is_whole) in numbers().filter(|(key, _)| key != MAY_BE_NEGATIVE) {
+    for (key, is_whole) in numbers().filter(|(key, _)| !MAY_BE_NEGATIVE.contains(&key.as_str())) {
         let values: &[&str] = if is_whole { &["-1"] } else { &["nan", "inf", "-inf", "-1e-9"] };
         for value in values {
             match with(&key, value) {
@@ -220,7 +229,9 @@ fn no_number_may_be_infinite_or_negative_or_none() {
 /// not.
 #[test]
 fn the_range_in_a_refusal_is_the_range_that_holds() {
-    for (key, is_whole) in numbers().filter(|(key, _)| key != "schema" && key != MAY_BE_NEGATIVE) {
+    for (key, is_whole) in
+        numbers().filter(|(key, _)| key != "schema" && !MAY_BE_NEGATIVE.contains(&key.as_str()))
+    {
         let Err(TomlError::Invalid { error: ConfigError::OutOfRange { least, most, .. }, .. }) =
             with(&key, "-1")
         else {

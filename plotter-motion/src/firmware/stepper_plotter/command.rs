@@ -23,6 +23,20 @@ pub enum Command {
         /// How fast, above 0; no faster than travels are.
         speed_mm_s: f64,
     },
+    /// The next [`Command::Plot`] that goes somewhere ends at this height of a third axis, mm, and z changes
+    /// evenly on its way.
+    #[cfg(feature = "third-motor")]
+    ToZ(f64),
+    /// As [`Command::Jog`], to another height of a third axis.
+    #[cfg(feature = "third-motor")]
+    JogZ {
+        /// Where to, mm.
+        to: Point,
+        /// To which height, mm.
+        to_z_mm: f64,
+        /// How fast in space, above 0.
+        speed_mm_s: f64,
+    },
     /// From here on this holds of the machine; it changes at a standstill. [`Report::Set`] follows.
     Set(Setting),
     /// As [`Command::Set`], but all of it becomes what the machine was switched on with.
@@ -50,6 +64,18 @@ pub enum Command {
     GoOn,
     /// As [`Command::GoOn`], and ends an emergency stop if the button has been released.
     Unlock,
+}
+
+impl Command {
+    /// Whether it moves by hand.
+    #[inline(always)] // so that nothing but the kind is looked at
+    pub(super) const fn is_jog(&self) -> bool {
+        #[cfg(feature = "third-motor")]
+        if let Self::JogZ { .. } = self {
+            return true;
+        }
+        matches!(self, Self::Jog { .. })
+    }
 }
 
 /// What the receive side asks at once, past the queue.
@@ -91,6 +117,12 @@ pub enum Stop {
         /// At which of its ends.
         end: Direction,
     },
+    /// A limit switch of the third axis came on the way to it.
+    #[cfg(feature = "third-motor")]
+    LimitZ {
+        /// At which of its ends.
+        end: Direction,
+    },
     /// [`Signal::Reset`].
     Reset {
         /// What the machine did then.
@@ -106,6 +138,11 @@ impl fmt::Display for Stop {
                 let axis = Plain(if *axis == Axis::X { "x" } else { "y" });
                 let end = Plain(if *end == Direction::Minus { "lower" } else { "upper" });
                 write!(f, "axis {axis}: stopped by its {end} limit switch; home the machine")
+            }
+            #[cfg(feature = "third-motor")]
+            Self::LimitZ { end } => {
+                let end = Plain(if *end == Direction::Minus { "lower" } else { "upper" });
+                write!(f, "axis z: stopped by its {end} limit switch; home the machine")
             }
             Self::Reset { .. } => f.write_str("stopped by a reset"),
         }
@@ -124,6 +161,22 @@ pub enum Report {
         at: Point,
         /// How long the axes are, or why it gave up.
         result: Result<Homed, HomingError>,
+    },
+    /// Homing gave up at the third axis; the others have not moved.
+    #[cfg(feature = "third-motor")]
+    NotHomedZ {
+        /// Where the pen is now, mm.
+        at: Point,
+        /// Why.
+        error: super::ZHomingError,
+    },
+    /// Homing gave up where two motors are made square.
+    #[cfg(feature = "third-motor")]
+    NotSquared {
+        /// Where the pen is now, mm.
+        at: Point,
+        /// Why.
+        error: super::SquaringError,
     },
     /// A jog has been cancelled: the machine stands, and leaves out what was commanded until
     /// [`Command::GoOn`].

@@ -85,6 +85,12 @@ impl CommandQueue {
             Command::Set(Setting { number, value }) => self.put(15, [number, 0], &[value]),
             Command::End => self.put(16, [0; 2], &[]),
             Command::Restore => self.put(17, [0; 2], &[]),
+            #[cfg(feature = "third-motor")]
+            Command::ToZ(mm) => self.put(18, [0; 2], &[mm]),
+            #[cfg(feature = "third-motor")]
+            Command::JogZ { to, to_z_mm, speed_mm_s } => {
+                self.put(19, [0; 2], &[to.x, to.y, speed_mm_s, to_z_mm])
+            }
         };
         if is_taken { Ok(()) } else { Err(command) }
     }
@@ -201,6 +207,10 @@ impl Packed {
             15 => Command::Set(Setting { number: low, value: a }),
             16 => Command::End,
             17 => Command::Restore,
+            #[cfg(feature = "third-motor")]
+            18 => Command::ToZ(a),
+            #[cfg(feature = "third-motor")]
+            19 => Command::JogZ { to, to_z_mm: d, speed_mm_s: c },
             _ => Command::Unlock,
         }
     }

@@ -37,6 +37,18 @@ impl HomingRun {
         }
     }
 
+    /// When a step may come that is this often in a second.
+    #[cfg(feature = "third-motor")]
+    pub(super) fn after(&self, rate_hz: u32) -> Duration {
+        self.last.saturating_add(Duration::from_secs(1) / rate_hz.max(1))
+    }
+
+    /// A step of the third axis has been made.
+    #[cfg(feature = "third-motor")]
+    pub(super) const fn made_other(&mut self, at: Duration) {
+        self.last = at;
+    }
+
     /// The step has been made.
     pub(super) fn made(&mut self, at: Duration) {
         self.homing.made();

@@ -19,6 +19,10 @@ pub enum Drivers {
 impl Drivers {
     /// Whether this waits for them.
     pub(super) fn keep_back(self, event: MotorEvent) -> bool {
+        #[cfg(feature = "third-motor")]
+        if matches!(event, MotorEvent::StepZ(_)) {
+            return self == Self::Busy;
+        }
         self == Self::Busy && matches!(event, MotorEvent::Step(_))
     }
 }

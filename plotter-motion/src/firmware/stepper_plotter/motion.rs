@@ -4,6 +4,8 @@
 mod ahead;
 mod by_hand;
 mod work;
+#[cfg(feature = "third-motor")]
+mod z;
 
 #[cfg(feature = "step-ahead")]
 pub(super) use ahead::{Made, whole_us};
@@ -15,6 +17,7 @@ use super::{
     Signal, Status, StepperPlotterSettings, Stop, StoredSettings,
 };
 use crate::extremes::greatest;
+use crate::homing::Homed;
 use crate::kinematics::{Cartesian, Kinematics};
 use crate::planner::{AllModes, Keep as _, Modes};
 use crate::seconds::has_come;
@@ -39,6 +42,15 @@ pub struct Step<'gate> {
     pub pulse: Pulse<'gate>,
 }
 
+/// What homing has measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Measured {
+    homed: Option<Homed>,
+    off: Option<StepPoint>,
+    /// Its place has been known since the machine was switched on.
+    is_placed: bool,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum State {
     Ready,
@@ -60,6 +72,7 @@ pub struct Motion<M: Modes = AllModes> {
     play: M::Kept<Play>,
     /// What it was switched on with.
     built: M::Kept<StepperPlotterSettings>,
+    measured: M::Kept<Measured>,
     gate: SafetyGate,
     state: State,
     /// Steps really made.
@@ -92,6 +105,8 @@ pub struct Motion<M: Modes = AllModes> {
     lateness: Lateness,
     #[cfg(feature = "step-ahead")]
     ahead: ahead::Ahead,
+    #[cfg(feature = "third-motor")]
+    z: M::Rise<z::ZState>,
 }
 
 impl Motion {
@@ -132,12 +147,17 @@ impl<M: Modes> Motion<M> {
         if let Some(built) = built.get_mut() {
             *built = *settings;
         }
-        Self {
+        #[cfg_attr(
+            not(feature = "third-motor"),
+            expect(unused_mut, reason = "nothing is told of a third axis")
+        )]
+        let mut motion = Self {
             settings: *settings,
             planner,
             steps,
             play,
             built,
+            measured: M::Kept::default(),
             gate,
             state: State::Ready,
             position: StepPoint::default(),
@@ -160,7 +180,12 @@ impl<M: Modes> Motion<M> {
             lateness: Lateness::default(),
             #[cfg(feature = "step-ahead")]
             ahead: ahead::Ahead::default(),
-        }
+            #[cfg(feature = "third-motor")]
+            z: M::Rise::default(),
+        };
+        #[cfg(feature = "third-motor")]
+        motion.tell_z();
+        motion
     }
 
     /// The next step that is due by `now`, if there is one and the motors' drivers can take it. One that they
@@ -300,6 +325,8 @@ impl<M: Modes> Motion<M> {
         if let Ok(planner) = Planner::with_modes(settings.limits()) {
             self.settings = settings;
             self.planner = planner;
+            #[cfg(feature = "third-motor")]
+            self.tell_z();
         }
         self.percents = Percents::default();
         if self.gate.is_latched() {
@@ -341,6 +368,26 @@ impl<M: Modes> Motion<M> {
         self.lateness
     }
 
+    /// What homing has measured last: none before, nor with [`ExactOnly`](crate::planner::ExactOnly).
+    #[must_use]
+    pub fn homed(&self) -> Option<Homed> {
+        self.measured.get()?.homed
+    }
+
+    /// Takes what an earlier homing has measured and a firmware has kept.
+    pub(super) fn set_homed(&mut self, homed: Homed) {
+        if let Some(measured) = self.measured.get_mut() {
+            measured.homed = Some(homed);
+        }
+    }
+
+    /// How many steps the carriage stood away from where it was believed to be, as the last homing has found:
+    /// what motors have lost since the one before. None until the machine has homed twice.
+    #[must_use]
+    pub fn off_steps(&self) -> Option<StepPoint> {
+        self.measured.get()?.off
+    }
+
     /// Where the motors stand: steps really made, also those that take up play.
     #[must_use]
     pub const fn position(&self) -> StepPoint {
@@ -375,6 +422,14 @@ impl<M: Modes> Motion<M> {
             activity,
             planned: u8::try_from(planned).unwrap_or(u8::MAX),
             at: self.position_mm(),
+            #[cfg(feature = "third-motor")]
+            z_mm: self.z_mm(),
+            #[cfg(feature = "third-motor")]
+            z_switches: self.gate.z_limits(),
+            #[cfg(feature = "third-motor")]
+            second_switches: self.gate.second_limits(),
+            #[cfg(feature = "third-motor")]
+            skew_steps: self.skew_steps(),
             speed_mm_s,
             laser: self.beam.power(),
             percents: self.percents,
@@ -434,6 +489,8 @@ impl<M: Modes> Motion<M> {
         self.planner.clear(at);
         darken(&mut self.planner);
         self.steps.clear(self.carriage());
+        #[cfg(feature = "third-motor")]
+        self.tell_z();
         if let Some(play) = self.play.get_mut() {
             play.stopped();
         }
@@ -479,6 +536,9 @@ fn step_gen<M: Modes>(settings: &StepperPlotterSettings) -> StepGen<Cartesian, M
     // mDraw moves the servo itself, and the motion waits for that.
     let pen_settle = match settings.dialect {
         Dialect::MDraw => Duration::ZERO,
+        // A motor's steps are over when they are over.
+        #[cfg(feature = "third-motor")]
+        Dialect::Grbl if settings.z.is_some() => Duration::ZERO,
         Dialect::Grbl => settings.pen_settle,
     };
     let timing = StepGenSettings { clock_hz: CLOCK_HZ, pen_settle, laser: settings.laser };

@@ -4,6 +4,7 @@ use super::{
     CheckedSettings, Drivers, Host, Lateness, Link, Motion, Receive, SettingsError, StartupLines, Status,
     Step, StepperPlotterSettings, StoredSettings,
 };
+use crate::homing::Homed;
 use crate::planner::{AllModes, Modes};
 use crate::{Axis, Direction, Point, SafetyGate, StepPoint, safety::Beam};
 use core::time::Duration;
@@ -115,6 +116,43 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
         self.work(now);
     }
 
+    /// Takes the state of the limit switches of a third axis.
+    #[cfg(feature = "third-motor")]
+    pub fn z_switches(&mut self, now: Duration, switches: crate::safety::EndSwitches) {
+        self.motion.z_switches(switches);
+        self.work(now);
+    }
+
+    /// Takes the state of the limit switches of the second motor of an axis. Those that
+    /// [`limit_switch`](Self::limit_switch) tells of this axis are the first motor's.
+    #[cfg(feature = "third-motor")]
+    pub fn second_switches(&mut self, now: Duration, switches: crate::safety::EndSwitches) {
+        self.motion.second_switches(switches);
+        self.work(now);
+    }
+
+    /// How many steps farther than the first the second motor of an axis went when both were made square last:
+    /// by how much the gantry was racked.
+    #[cfg(feature = "third-motor")]
+    #[must_use]
+    pub fn skew_steps(&self) -> Option<i32> {
+        self.motion.skew_steps()
+    }
+
+    /// The height of a third axis by the steps really made, mm; none of a machine with two.
+    #[cfg(feature = "third-motor")]
+    #[must_use]
+    pub fn z_mm(&self) -> Option<f64> {
+        self.motion.z_mm()
+    }
+
+    /// By how many steps the third axis stood higher than was believed, as its last homing has found.
+    #[cfg(feature = "third-motor")]
+    #[must_use]
+    pub fn z_off_steps(&self) -> Option<i32> {
+        self.motion.z_off_steps()
+    }
+
     /// Takes the state of the emergency stop button; pressed, it stops everything at once and latches.
     pub fn emergency_stop(&mut self, now: Duration, pressed: bool) {
         self.motion.emergency_stop(pressed, &mut self.link);
@@ -165,6 +203,28 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
     #[must_use]
     pub fn startup_lines(&self) -> StartupLines {
         self.receive.startup_lines()
+    }
+
+    /// What homing has measured last, steps between the switches of each axis: to be kept by the firmware
+    /// ([`Homed::to_bytes`]). None before it has homed, nor with
+    /// [`ExactOnly`](crate::planner::ExactOnly).
+    #[must_use]
+    pub fn homed(&self) -> Option<Homed> {
+        self.motion.homed()
+    }
+
+    /// Takes what an earlier homing has measured and the firmware has kept: right after the controller is
+    /// made. Grbl's `$H` warns if the axes are no longer as long.
+    pub fn set_homed(&mut self, homed: Homed) {
+        self.motion.set_homed(homed);
+        self.receive.set_homed(homed);
+    }
+
+    /// How many steps the carriage stood away from where it was believed to be, as the last homing has found:
+    /// what motors have lost since the one before. None until the machine has homed twice.
+    #[must_use]
+    pub fn off_steps(&self) -> Option<StepPoint> {
+        self.motion.off_steps()
     }
 
     /// Takes the lines that a firmware has kept: right after the controller is made, before anything else.

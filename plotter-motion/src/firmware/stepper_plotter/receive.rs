@@ -6,6 +6,7 @@ use super::{
     Dialect, Link, SettingsError, Signal, StartupLines, Status, StepperPlotterSettings, StoredSettings,
 };
 use crate::Point;
+use crate::homing::Homed;
 
 /// A receive side: bytes from the host in, commands for the motion side out, and answers.
 ///
@@ -44,6 +45,9 @@ pub trait Host: Clone + core::fmt::Debug + PartialEq + Sized {
 
     /// Takes those that have been kept, before it does anything else.
     fn set_startup_lines(&mut self, _: &StartupLines) {}
+
+    /// Takes what an earlier homing has measured.
+    fn set_homed(&mut self, _: Homed) {}
 }
 
 /// The receive side for either dialect, as the settings say. See [`Host`] for what it does.
@@ -119,6 +123,11 @@ impl Receive {
     pub fn set_startup_lines(&mut self, lines: &StartupLines) {
         either!(&mut self.host, set_startup_lines(lines));
     }
+
+    /// See [`Host::set_homed`].
+    pub fn set_homed(&mut self, homed: Homed) {
+        either!(&mut self.host, set_homed(homed));
+    }
 }
 
 /// All of them call the type's own, which are there without the trait.
@@ -163,6 +172,10 @@ macro_rules! host {
 
             fn set_startup_lines(&mut self, lines: &StartupLines) {
                 self.set_startup_lines(lines);
+            }
+
+            fn set_homed(&mut self, homed: Homed) {
+                self.set_homed(homed);
             }
         }
     };

@@ -26,6 +26,8 @@ const SIDES_MM: RangeInclusive<f64> = 1.0..=65_535.0;
 /// [`AccelLimit::Axes`](crate::planner::AccelLimit::Axes), of each motor with
 /// [`AccelLimit::Belts`](crate::planner::AccelLimit::Belts) (of the sum, of the difference), else of the pen:
 /// one for both | 1 to 1,000,000 |
+/// | 102, 112, 122, 132 | of a third axis: steps/mm, greatest speed, mm/min, and acceleration, mm/s²,
+/// travel, mm | as of the others |
 /// | 130, 131 | width and height of the area, whole mm | 1 to 65,535 |
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -82,6 +84,13 @@ impl Setting {
             110 | 111 => 0.1..=600_000.0,
             120 | 121 => 1.0..=1e6,
             130 | 131 => SIDES_MM,
+            #[cfg(feature = "third-motor")]
+            102 | 112 | 122 | 132 if settings.z.is_some() => match number {
+                102 => 0.01..=10_000.0,
+                112 => 0.1..=600_000.0,
+                122 => 1.0..=1e6,
+                _ => 0.01..=65_535.0,
+            },
             _ => return Err(SettingProblem::Fixed),
         };
         if value < 0.0 {
@@ -97,6 +106,16 @@ impl Setting {
         let homing_hz = home_x.fast_hz.max(home_y.fast_hz).max(home_x.slow_hz).max(home_y.slow_hz);
         if speed_mm_s * steps_per_mm > MOST_HZ || homing_hz > 100_000 {
             return Err(SettingProblem::StepRate);
+        }
+        #[cfg(feature = "third-motor")]
+        if let Some(z) = settings.z {
+            if single(z.speed_mm_s * z.steps_per_mm) > MOST_HZ {
+                return Err(SettingProblem::StepRate);
+            }
+            // A travel that no longer reaches the heights of the pen.
+            if z.check(true, &settings.planner).is_err() {
+                return Err(SettingProblem::OutOfRange);
+            }
         }
         Ok(settings)
     }
@@ -137,6 +156,17 @@ impl Setting {
             120 | 121 => *settings.planner.accel_of_motor(number == 121) = value,
             130 => settings.stored.width_mm = side_mm(),
             131 => settings.stored.height_mm = side_mm(),
+            #[cfg(feature = "third-motor")]
+            102 | 112 | 122 | 132 => {
+                if let Some(z) = &mut settings.z {
+                    match number {
+                        102 => z.steps_per_mm = value,
+                        112 => z.speed_mm_s = value / 60.0,
+                        122 => z.accel_mm_s2 = value,
+                        _ => z.travel_mm = value,
+                    }
+                }
+            }
             _ => {}
         }
         settings

@@ -1,5 +1,9 @@
 //! [`StepperPlotterSettings`]: what the controller has to know of its machine.
 
+#[cfg(feature = "third-motor")]
+use super::{SecondMotor, ZAxis, ZHoming, ZPen};
+#[cfg(feature = "third-motor")]
+use crate::config::SecondMotorChoice;
 use crate::gcode::PenConvention;
 use crate::kinematics::{Backlash, Cartesian, MotorScale, ScaleError};
 use crate::planner::{AllModes, Modes};
@@ -112,6 +116,14 @@ pub struct StepperPlotterSettings {
     pub home_x: HomingAxis,
     /// How y is homed.
     pub home_y: HomingAxis,
+    /// A third axis. It takes [`ThreeAxes`](crate::planner::ThreeAxes).
+    #[cfg(feature = "third-motor")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub z: Option<ZAxis>,
+    /// A second motor of an axis. It takes [`ThreeAxes`](crate::planner::ThreeAxes).
+    #[cfg(feature = "third-motor")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub second: Option<SecondMotor>,
 }
 
 #[cfg(feature = "serde")]
@@ -130,8 +142,12 @@ crate::checked_serde::checked_deserialize!(
         homing: bool,
         home_x: HomingAxis,
         home_y: HomingAxis,
+        #[cfg(feature = "third-motor")]
+        z: Option<ZAxis>,
+        #[cfg(feature = "third-motor")]
+        second: Option<SecondMotor>,
     },
-    |settings: &StepperPlotterSettings| settings.checked::<AllModes>().map(|_| ())
+    |settings: &StepperPlotterSettings| settings.can_be_driven()
 );
 
 impl Default for StepperPlotterSettings {
@@ -155,11 +171,45 @@ impl Default for StepperPlotterSettings {
             homing: false,
             home_x: HomingAxis::default(),
             home_y: HomingAxis::default(),
+            #[cfg(feature = "third-motor")]
+            z: None,
+            #[cfg(feature = "third-motor")]
+            second: None,
         }
     }
 }
 
+/// [`StepperPlotterSettings`] with the fields of a machine with two axes, and none of a third motor, whether these
+/// are built in or not: for constants that a build script writes.
+#[cfg(feature = "third-motor")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! two_axes {
+    ($settings:ident { $($field:ident: $value:expr),* $(,)? }) => {
+        $settings { $($field: $value,)* z: None, second: None }
+    };
+}
+
+#[cfg(not(feature = "third-motor"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! two_axes {
+    ($settings:ident { $($field:ident: $value:expr),* $(,)? }) => {
+        $settings { $($field: $value),* }
+    };
+}
+
 impl StepperPlotterSettings {
+    /// Whether some controller can drive such a machine.
+    #[cfg(feature = "serde")]
+    fn can_be_driven(&self) -> Result<(), SettingsError> {
+        #[cfg(feature = "third-motor")]
+        if self.z.is_some() || self.second.is_some() {
+            return self.checked::<crate::planner::ThreeAxes>().map(|_| ());
+        }
+        self.checked::<AllModes>().map(|_| ())
+    }
+
     /// The motors, once they have been checked.
     pub(super) const fn cartesian(&self) -> Cartesian {
         Cartesian::of_checked(self.x_steps_per_mm, self.y_steps_per_mm)
@@ -194,6 +244,16 @@ impl StepperPlotterSettings {
         }
         if !M::ALL && (self.backlash.x_steps != 0 || self.backlash.y_steps != 0) {
             return Err(SettingsError::Planner(PlanError::Mode { quantity: "backlash" }));
+        }
+        #[cfg(feature = "third-motor")]
+        if let Some(z) = &self.z
+            && let Err(error) = z.check(M::Z, &self.planner)
+        {
+            return Err(SettingsError::Planner(error));
+        }
+        #[cfg(feature = "third-motor")]
+        if self.second.is_some() && !M::Z {
+            return Err(SettingsError::Planner(PlanError::Mode { quantity: "second" }));
         }
         let limits = self.limits();
         if let Err(error) = limits.check::<M>() {
@@ -246,6 +306,55 @@ impl StepperPlotterSettings {
         }
     }
 
+    /// With what the machine says of a third axis and of two motors on an axis, for a controller with
+    /// [`ThreeAxes`](crate::planner::ThreeAxes).
+    ///
+    /// ```
+    /// # use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
+    /// # use plotter_motion::{Machine, MachineConfig};
+    /// let mut config = MachineConfig::stepper_plotter();
+    /// config.z.enabled = true;
+    /// let machine = Machine::new(config)?;
+    /// let settings = StepperPlotterSettings::of(&machine, Dialect::Grbl).with_third_motor_of(&machine);
+    /// assert_eq!(settings.z.map(|z| (z.steps_per_mm, z.travel_mm)), Some((400.0, 30.0)));
+    /// assert_eq!((settings.second, StepperPlotterSettings::of(&machine, Dialect::Grbl).z), (None, None));
+    /// # Ok::<(), plotter_motion::ConfigError>(())
+    /// ```
+    #[cfg(feature = "third-motor")]
+    #[must_use]
+    pub fn with_third_motor_of(self, machine: &Machine) -> Self {
+        let config = machine.config();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
+        let whole = |value: f64| libm::round(value) as u32;
+        let (z, homing) = (config.z, config.homing);
+        let home = ZHoming {
+            start_hz: whole(z.start_rate_hz),
+            slow_hz: whole(homing.slow_rate_hz.min(z.start_rate_hz)),
+            pull_off_steps: whole(homing.pull_off_mm * z.steps_per_mm).max(1),
+            release_steps: whole(homing.release_mm * z.steps_per_mm).max(1),
+            most_steps: whole((z.travel_mm + homing.pull_off_mm + homing.release_mm) * z.steps_per_mm),
+        };
+        let of_z = ZAxis {
+            steps_per_mm: z.steps_per_mm,
+            speed_mm_s: z.speed_mm_s,
+            accel_mm_s2: z.accel_mm_s2,
+            travel_mm: z.travel_mm,
+            pen: z.lifts_pen.then_some(ZPen { up_mm: z.up_mm, down_mm: z.down_mm }),
+            home: z.homes.then_some(home),
+        };
+        let axis = match config.second_motor.axis {
+            SecondMotorChoice::None => None,
+            SecondMotorChoice::X => Some((Axis::X, self.x_steps_per_mm)),
+            SecondMotorChoice::Y => Some((Axis::Y, self.y_steps_per_mm)),
+        };
+        let second = axis.map(|(axis, steps_per_mm)| SecondMotor {
+            axis,
+            offset_steps: crate::toolpath::from_mm(config.second_motor.offset_mm, steps_per_mm),
+            most_skew_steps: whole(config.second_motor.max_skew_mm * steps_per_mm),
+        });
+        Self { z: z.enabled.then_some(of_z), second, ..self }
+    }
+
     /// Whether [`ExactOnly`](crate::planner::ExactOnly) is enough for them: the path is exact, the jerk has
     /// no limit, and there is no play. Such a controller takes every vertex as it is, whatever
     /// [`PlannerSettings::allowance_mm`] says.
@@ -284,6 +393,10 @@ impl StepperPlotterSettings {
 
     /// By which words a G-code text lifts the pen.
     pub(super) fn convention(&self) -> PenConvention {
+        #[cfg(feature = "third-motor")]
+        if self.z.is_some_and(|z| z.pen.is_none()) && !self.laser {
+            return PenConvention::Motion;
+        }
         if self.laser { PenConvention::GRBL_LASER } else { self.pen }
     }
 }

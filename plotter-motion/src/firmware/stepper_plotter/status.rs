@@ -52,6 +52,18 @@ pub struct Status {
     pub planned: u8,
     /// Where the pen is by the steps really made, mm.
     pub at: Point,
+    /// The height of a third axis by the steps really made, mm, if there is one.
+    #[cfg(feature = "third-motor")]
+    pub z_mm: Option<f64>,
+    /// Which limit switches of it are pressed.
+    #[cfg(feature = "third-motor")]
+    pub z_switches: crate::safety::EndSwitches,
+    /// Which limit switches of the second motor of an axis are pressed.
+    #[cfg(feature = "third-motor")]
+    pub second_switches: crate::safety::EndSwitches,
+    /// How many steps farther than the first the second motor of an axis went when both were made square last.
+    #[cfg(feature = "third-motor")]
+    pub skew_steps: Option<i32>,
     /// How fast it moves, mm/s.
     pub speed_mm_s: f32,
     /// Power of the laser, in 65535ths.

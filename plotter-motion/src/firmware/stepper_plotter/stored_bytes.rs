@@ -16,11 +16,14 @@
 //! [`StepperPlotter::stored`]: crate::firmware::StepperPlotter::stored
 
 use super::StoredSettings;
+use crate::homing::Homed;
 use core::fmt;
 use crc::{CRC_16_IBM_SDLC, Crc, Table};
 
 /// Of the layout above.
 const VERSION: u8 = 1;
+/// Of what homing has measured.
+const HOMED_VERSION: u8 = 1;
 /// Bytes before the check.
 const CHECKED: usize = StoredSettings::BYTES - 2;
 /// Greatest speed, % (see [`StoredSettings::speed_percent`]).
@@ -79,6 +82,42 @@ impl fmt::Display for StoredError {
 }
 
 impl core::error::Error for StoredError {}
+
+impl Homed {
+    /// How many bytes it takes: a version, two numbers of four with their low byte first, a check of two.
+    pub const BYTES: usize = 11;
+
+    /// As bytes, to be kept beside [`StoredSettings`].
+    ///
+    /// ```
+    /// # use plotter_motion::homing::Homed;
+    /// let homed = Homed { x_steps: 34_000, y_steps: 28_000 };
+    /// let bytes = homed.to_bytes();
+    /// assert_eq!(bytes[..9], [1, 0xD0, 0x84, 0, 0, 0x60, 0x6D, 0, 0]);
+    /// assert_eq!(Homed::from_bytes(&bytes), Some(homed));
+    /// assert_eq!(Homed::from_bytes(&[0xFF; 11]), None); // erased memory
+    /// ```
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; Self::BYTES] {
+        let [x0, x1, x2, x3] = self.x_steps.to_le_bytes();
+        let [y0, y1, y2, y3] = self.y_steps.to_le_bytes();
+        let [c0, c1] = CRC.checksum(&[HOMED_VERSION, x0, x1, x2, x3, y0, y1, y2, y3]).to_le_bytes();
+        [HOMED_VERSION, x0, x1, x2, x3, y0, y1, y2, y3, c0, c1]
+    }
+
+    /// From such bytes; what follows them is not looked at. None where they are too few, of another version,
+    /// damaged or have never been written: the machine then finds out again.
+    #[must_use]
+    pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        let &[version, x0, x1, x2, x3, y0, y1, y2, y3, c0, c1] = bytes.first_chunk::<{ Self::BYTES }>()?;
+        let check = CRC.checksum(&[version, x0, x1, x2, x3, y0, y1, y2, y3]);
+        let is_whole = version == HOMED_VERSION && check == u16::from_le_bytes([c0, c1]);
+        is_whole.then_some(Self {
+            x_steps: u32::from_le_bytes([x0, x1, x2, x3]),
+            y_steps: u32::from_le_bytes([y0, y1, y2, y3]),
+        })
+    }
+}
 
 impl StoredSettings {
     /// How many bytes they take.

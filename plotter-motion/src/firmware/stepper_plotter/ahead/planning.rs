@@ -98,6 +98,7 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
     /// Takes a machine that stands, one that was just made, apart: into one half that plans in the main loop
     /// and one that steps in a timer's interrupt, with `memory` between them.
     pub fn split<const N: usize>(mut self, memory: &mut StepsAhead<N>) -> (Planning<'_, H, M>, Stepping<'_>) {
+        const { assert!(!M::Z, "a third axis is not stepped ahead") }
         let motion = &mut self.motion;
         let settings = *motion.settings();
         let at = motion.stands_at();
@@ -389,7 +390,7 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
         {
             let why = match blocked {
                 Blocked::Limit { axis, end } => Stop::Limit { axis, end },
-                Blocked::Stopped => Stop::Emergency,
+                _ => Stop::Emergency,
             };
             self.stop(why);
         } else if let Some(what) = self.waits_for

@@ -6,15 +6,18 @@ use super::listing::is_listed;
 use super::words::{read, whole};
 use super::{Grbl, Mode, Pens, Wait, send};
 use crate::PlotOp;
+use crate::Point;
 use crate::decimal::Decimal;
 use crate::gcode::{Block, Modes, Outcomes, SYSTEMS, Word, Words};
 use crate::geom::Vec2Single;
+#[cfg(feature = "third-motor")]
+use crate::planner::Keep as _;
 
 /// Least feed, mm/s: a lower one is raised to it. Chosen so that a step of 0.01 mm still takes no more than
 /// ten seconds; a feed of 0 would never end.
 const LEAST_FEED_MM_S: f64 = 1e-3;
 
-fn no_slower(feed_mm_s: f64) -> f64 {
+pub(super) fn no_slower(feed_mm_s: f64) -> f64 {
     if feed_mm_s > LEAST_FEED_MM_S { feed_mm_s } else { LEAST_FEED_MM_S }
 }
 
@@ -25,9 +28,15 @@ impl<P: Pens> Grbl<P> {
         let known = P::read(&self.settings, |options| options.words);
         let Some(block) = read(text, known)? else { return Ok(()) };
         let before = self.interpreter;
+        #[cfg(feature = "third-motor")]
+        let heights = self.heights.clone();
         let done = self.carry_out(&block, link);
         if done.is_err() {
             self.interpreter = before;
+            #[cfg(feature = "third-motor")]
+            {
+                self.heights = heights;
+            }
         }
         done
     }
@@ -48,6 +57,24 @@ impl<P: Pens> Grbl<P> {
             return Err(Code::NO_FEED);
         }
         let (to, feed_mm_s) = self.interpreter.travel(&block)?;
+        #[cfg(feature = "third-motor")]
+        let most = self.most();
+        #[cfg(feature = "third-motor")]
+        if let Some(z) = self.z_axis()
+            && let Some(heights) = self.heights.get_mut()
+            && let Some(to_z_mm) = heights.jog_target(&block, &self.interpreter.modes())
+        {
+            let to = to.unwrap_or(self.interpreter.modes().position);
+            let reaches = (0.0..=z.travel_mm).contains(&to_z_mm);
+            if !reaches || !area::contains(most, &to, &PlotOp::Travel { to }) {
+                return Err(Code::JOG_TARGET);
+            }
+            heights.at_mm = to_z_mm;
+            self.interpreter.stand_at(to);
+            let speed_mm_s = no_slower(feed_mm_s.unwrap_or(0.0));
+            self.command(link, Command::JogZ { to, to_z_mm, speed_mm_s });
+            return Ok(());
+        }
         let Some(to) = to else { return Ok(()) };
         if !area::contains(self.most(), &to, &PlotOp::Travel { to }) {
             return Err(Code::JOG_TARGET);
@@ -107,10 +134,16 @@ impl<P: Pens> Grbl<P> {
             self.reports_to_offset = 0; // the next report tells it
         }
         let moves = outcomes.iter().flatten().any(|op| op.target().is_some());
+        #[cfg(feature = "third-motor")]
+        let mut targets = self.targets(block, &before, &modes)?;
+        #[cfg(feature = "third-motor")]
+        let moves = moves || targets.is_any();
         let (mut has_axis, mut dwells, mut ends, mut asks_to_move) = (false, false, false, false);
         for word in block.words() {
             match (word.letter, word.tenths()) {
                 (b'X' | b'Y', _) => has_axis = true,
+                #[cfg(feature = "third-motor")]
+                (b'Z', _) if targets.is_any() => has_axis = true,
                 (b'G', Some(10 | 20 | 30)) => asks_to_move = true,
                 (b'G', Some(40)) => dwells = true,
                 (b'M', Some(20 | 300)) => ends = true,
@@ -125,16 +158,13 @@ impl<P: Pens> Grbl<P> {
         }
         let most = self.most();
         let mut at = before.position;
+        #[cfg(feature = "third-motor")]
+        if !self.reaches(&targets) {
+            return self.leaves_area(before.position, link);
+        }
         for op in outcomes.iter().flatten() {
             if !area::contains(most, &at, op) {
-                // Nothing moves, so there is nothing to stop.
-                if self.mode == Mode::Check {
-                    return Err(Code::TARGET);
-                }
-                // Lines that were answered by ok are still drawn; then the pen goes up.
-                self.command(link, Command::Plot(PlotOp::Travel { to: before.position }));
-                self.alarm(Alarm::SOFT_LIMIT);
-                return Err(Code::TARGET);
+                return self.leaves_area(before.position, link);
             }
             at = op.target().unwrap_or(at);
         }
@@ -144,8 +174,15 @@ impl<P: Pens> Grbl<P> {
             }
             return Ok(());
         }
+        #[cfg(feature = "third-motor")]
+        let mut left = outcomes.iter().flatten().filter(|op| op.target().is_some()).count();
         while let Some(op) = outcomes.take() {
             let Ok(mut op) = op else { continue };
+            #[cfg(feature = "third-motor")]
+            if op.target().is_some() {
+                self.send_height(&mut targets, left, link);
+                left -= 1;
+            }
             if let PlotOp::Draw { feed_mm_s: Some(feed), .. }
             | PlotOp::DrawArc { feed_mm_s: Some(feed), .. } = &mut op
             {
@@ -153,6 +190,8 @@ impl<P: Pens> Grbl<P> {
             }
             self.command(link, Command::Plot(op));
         }
+        #[cfg(feature = "third-motor")]
+        self.send_z_alone(targets, &modes, link);
         if pauses {
             self.command(link, Command::Pause);
         }
@@ -169,6 +208,21 @@ impl<P: Pens> Grbl<P> {
             self.wait = Some(Wait::Finish);
         }
         Ok(())
+    }
+}
+
+impl<P: Pens> Grbl<P> {
+    /// A line that leaves the area is not carried out.
+    #[cfg_attr(target_os = "none", inline(always))] // from one place where there are two axes
+    fn leaves_area(&mut self, stands_at: Point, link: &mut Link) -> Result<(), Code> {
+        // Nothing moves, so there is nothing to stop.
+        if self.mode == Mode::Check {
+            return Err(Code::TARGET);
+        }
+        // Lines that were answered by ok are still drawn; then the pen goes up.
+        self.command(link, Command::Plot(PlotOp::Travel { to: stands_at }));
+        self.alarm(Alarm::SOFT_LIMIT);
+        Err(Code::TARGET)
     }
 }
 

@@ -145,6 +145,24 @@ impl Alarm {
     /// The emergency stop button. Grbl 1.1 has no number for it; this is that of its successor grblHAL.
     pub(super) const EMERGENCY: Self = Self(10);
 
+    /// As [`Alarm::of`].
+    #[cfg(feature = "third-motor")]
+    pub(super) const fn of_z(error: super::super::ZHomingError) -> Self {
+        match error {
+            super::super::ZHomingError::Stuck { .. } => Self(8),
+            _ => Self(9),
+        }
+    }
+
+    /// As [`Alarm::of`].
+    #[cfg(feature = "third-motor")]
+    pub(super) const fn of_squaring(error: super::super::SquaringError) -> Self {
+        match error {
+            super::super::SquaringError::Stuck { .. } => Self(8),
+            _ => Self(9),
+        }
+    }
+
     /// 8: a switch did not open; 9: a switch was not found where it should be.
     pub(super) const fn of(error: HomingError) -> Self {
         match error {
@@ -154,7 +172,32 @@ impl Alarm {
     }
 }
 
-/// Both coordinates of a place or a way, mm.
+/// The coordinates of a place or a way, mm; the third where there may be one.
+#[cfg(not(feature = "third-motor"))]
 pub(super) fn coordinates(x: f64, y: f64) -> (Thousandths, Thousandths) {
     (Thousandths::of(x), Thousandths::of(y))
 }
+
+/// The coordinates of a place or a way, mm.
+#[cfg(feature = "third-motor")]
+pub(super) fn coordinates(x: f64, y: f64, z: Option<f64>) -> (Thousandths, Thousandths, Thousandths) {
+    (Thousandths::of(x), Thousandths::of(y), Thousandths::of(z.unwrap_or(0.0)))
+}
+
+/// A text with the coordinates of a place between two others: where there are two axes, the third is part of
+/// the text.
+#[cfg(not(feature = "third-motor"))]
+macro_rules! placed {
+    ($before:literal ($($first:expr),*), $at:expr, $after:literal ($($last:expr),*)) => {
+        format_args!(concat!($before, "{},{},0.000", $after), $($first,)* $at.0, $at.1, $($last),*)
+    };
+}
+
+#[cfg(feature = "third-motor")]
+macro_rules! placed {
+    ($before:literal ($($first:expr),*), $at:expr, $after:literal ($($last:expr),*)) => {
+        format_args!(concat!($before, "{},{},{}", $after), $($first,)* $at.0, $at.1, $at.2, $($last),*)
+    };
+}
+
+pub(super) use placed;

@@ -9,6 +9,8 @@ use core::fmt::Write as _;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Kept {
     pub(super) lines: StartupLines,
+    /// What homing has measured last.
+    pub(super) homed: Option<crate::homing::Homed>,
     /// The settings that the controller was made with.
     built: StepperPlotterSettings,
     /// The start-up line to carry out next; from [`StartupLines::COUNT`] on there is none.
@@ -23,6 +25,7 @@ impl Default for Kept {
     fn default() -> Self {
         Self {
             lines: StartupLines::default(),
+            homed: None,
             built: StepperPlotterSettings::default(),
             next: StartupLines::COUNT,
             running: None,
@@ -100,8 +103,14 @@ impl<P: Pens> Grbl<P> {
         }
         if self.alarm.is_some() {
             let before = (self.interpreter, core::mem::replace(&mut self.mode, Mode::Check));
+            #[cfg(feature = "third-motor")]
+            let heights = self.heights.clone();
             let done = self.block(line, link);
             (self.interpreter, self.mode) = before;
+            #[cfg(feature = "third-motor")]
+            {
+                self.heights = heights;
+            }
             done?;
         } else {
             self.block(line, link)?;
@@ -122,6 +131,10 @@ impl<P: Pens> Grbl<P> {
         if all {
             kept.lines = StartupLines::default();
             self.interpreter.restore_origins();
+            #[cfg(feature = "third-motor")]
+            if let Some(heights) = self.heights.get_mut() {
+                heights.restore_origins();
+            }
         }
         send(link, Command::Restore);
         self.wait = Some(Wait::Restore);

@@ -3,7 +3,9 @@
 use super::super::output::Output;
 use super::super::settings::FULL_POWER;
 use super::super::{COMMANDS, Setting, StartupLines, StepperPlotterSettings};
-use super::codes::coordinates;
+use super::codes::{coordinates, placed};
+#[cfg(feature = "third-motor")]
+use super::heights::Heights;
 use super::rx_buffer::RX_BYTES;
 use super::{MOST_COMMANDS, OUTPUT};
 use crate::decimal_text::{Plain, Thousandths, Whole};
@@ -27,6 +29,8 @@ pub(super) enum Listing {
 pub(super) struct About<'a> {
     pub(super) settings: &'a StepperPlotterSettings,
     pub(super) interpreter: &'a LineInterpreter,
+    #[cfg(feature = "third-motor")]
+    pub(super) heights: Option<&'a Heights>,
     pub(super) lines: Option<&'a StartupLines>,
     /// Whether settings can be restored.
     pub(super) restores: bool,
@@ -39,7 +43,7 @@ pub(super) const BLOCKS: usize = COMMANDS - MOST_COMMANDS;
 impl Listing {
     /// Writes one line of the listing. Says whether there was one left.
     pub(super) fn line(self, index: u8, about: &About<'_>, out: &mut Output<OUTPUT>) -> bool {
-        let &About { settings, interpreter, lines, restores } = about;
+        let &About { settings, interpreter, lines, restores, .. } = about;
         match self {
             Self::Settings => {
                 let Some((number, value, is_whole)) = setting(index, settings) else { return false };
@@ -72,21 +76,32 @@ impl Listing {
             Self::Offsets => match index {
                 0..SYSTEMS => {
                     let origin = interpreter.origin(index);
-                    let (x, y) = coordinates(origin.x, origin.y);
-                    out.line(format_args!("[G{}:{x},{y},0.000]", Whole(54 + u64::from(index))));
+                    #[cfg(not(feature = "third-motor"))]
+                    let origin = coordinates(origin.x, origin.y);
+                    #[cfg(feature = "third-motor")]
+                    let origin =
+                        coordinates(origin.x, origin.y, about.heights.map(|heights| heights.origin(index)));
+                    out.line(placed!("[G{}:"(Whole(54 + u64::from(index))), origin, "]"()));
                 }
                 SYSTEMS | 7 => {
                     let home = interpreter.home_place(index == 7);
-                    let (x, y) = coordinates(home.x, home.y);
-                    out.line(format_args!(
-                        "[G{}:{x},{y},0.000]",
-                        Plain(if index == 7 { "30" } else { "28" })
-                    ));
+                    #[cfg(not(feature = "third-motor"))]
+                    let home = coordinates(home.x, home.y);
+                    #[cfg(feature = "third-motor")]
+                    let home = coordinates(
+                        home.x,
+                        home.y,
+                        about.heights.map(|heights| heights.home_place(index == 7)),
+                    );
+                    out.line(placed!("[G{}:"(Plain(if index == 7 { "30" } else { "28" })), home, "]"()));
                 }
                 8 => {
                     let shift = interpreter.shift();
-                    let (x, y) = coordinates(shift.x, shift.y);
-                    out.line(format_args!("[G92:{x},{y},0.000]"));
+                    #[cfg(not(feature = "third-motor"))]
+                    let shift = coordinates(shift.x, shift.y);
+                    #[cfg(feature = "third-motor")]
+                    let shift = coordinates(shift.x, shift.y, about.heights.map(Heights::shift));
+                    out.line(placed!("[G92:"(), shift, "]"()));
                 }
                 9 => {
                     out.line(format_args!("[TLO:{}]", Thousandths::of(interpreter.modes().length_mm)));
@@ -162,6 +177,13 @@ fn setting(index: u8, settings: &StepperPlotterSettings) -> Option<(u8, f64, boo
         101 => settings.y_steps_per_mm,
         110 | 111 => greater(planner.travel_speed_mm_s, planner.speed_mm_s) * 60.0,
         120 | 121 => *planner.clone().accel_of_motor(number == 121),
+        #[cfg(feature = "third-motor")]
+        102 | 112 | 122 | 132 if let Some(z) = settings.z => match number {
+            102 => z.steps_per_mm,
+            112 => z.speed_mm_s * 60.0,
+            122 => z.accel_mm_s2,
+            _ => z.travel_mm,
+        },
         _ => f64::from(whole),
     };
     Some((number, value, !matches!(number, 11 | 12 | 24 | 25 | 27 | 100..)))

@@ -2,6 +2,9 @@
 
 mod block;
 mod codes;
+#[cfg(feature = "third-motor")]
+mod heights;
+mod homed;
 mod kept;
 mod line_buffer;
 mod listing;
@@ -19,6 +22,8 @@ use crate::gcode::LineInterpreter;
 use crate::planner::Keep as _;
 use crate::{PlotOp, Point};
 use codes::{Alarm, Code};
+#[cfg(feature = "third-motor")]
+use core::fmt;
 use core::marker::PhantomData;
 use kept::Kept;
 use line_buffer::LineBuffer;
@@ -85,6 +90,8 @@ pub struct Grbl<P: Pens = AnyPen> {
     jogs: bool,
     greeting: bool,
     kept: P::Kept<Kept>,
+    #[cfg(feature = "third-motor")]
+    heights: P::Kept<heights::Heights>,
     out: Output<OUTPUT>,
 }
 
@@ -116,6 +123,8 @@ impl<P: Pens> Grbl<P> {
             jogs: false,
             greeting: true,
             kept,
+            #[cfg(feature = "third-motor")]
+            heights: P::Kept::default(),
             out: Output::new(),
         }
     }
@@ -171,6 +180,10 @@ impl<P: Pens> Grbl<P> {
 
     pub(super) fn work(&mut self, status: &Status, link: &mut Link) {
         loop {
+            #[cfg(feature = "third-motor")]
+            if let Some(heights) = self.heights.get_mut() {
+                heights.look(status);
+            }
             self.gather();
             if self.out.room() < MOST_ANSWER
                 || !(self.tell(status, link) || self.start(link) || self.carry_on(status, link))
@@ -199,13 +212,23 @@ impl<P: Pens> Grbl<P> {
         if core::mem::take(&mut self.greeting) {
             self.greet();
         } else if let Some(report) = link.reports.pop() {
+            if self.kept.get().is_some() {
+                self.tell_measured(&report, status);
+            }
             self.take(report);
         } else if core::mem::take(&mut self.status_wanted) {
             self.tell_status(status, link);
         } else if let Some((listing, index)) = self.listing {
             let restores = self.restores(status);
             let lines = self.kept.get().map(|kept| &kept.lines);
-            let about = About { settings: &self.settings, interpreter: &self.interpreter, lines, restores };
+            let about = About {
+                settings: &self.settings,
+                interpreter: &self.interpreter,
+                #[cfg(feature = "third-motor")]
+                heights: heights::told(&self.settings).and(self.heights.get()),
+                lines,
+                restores,
+            };
             if listing.line(index, &about, &mut self.out) {
                 self.listing = Some((listing, index.saturating_add(1)));
             } else {
@@ -270,6 +293,13 @@ impl<P: Pens> Grbl<P> {
     }
 
     fn take(&mut self, report: Report) {
+        #[cfg(feature = "third-motor")]
+        if let Some(heights) = self.heights.get_mut().filter(|_| report != Report::Done) {
+            heights.stand_still();
+            if let Report::Stopped { .. } = report {
+                heights.reset();
+            }
+        }
         match report {
             Report::Done => {
                 let waited = self.wait.take();
@@ -298,6 +328,14 @@ impl<P: Pens> Grbl<P> {
                     (Some(_), Err(_)) => self.error(Code::LOCKED),
                 }
             }
+            #[cfg(feature = "third-motor")]
+            Report::NotHomedZ { at, error } => {
+                self.give_up_homing(at, Alarm::of_z(error), format_args!("{error}"));
+            }
+            #[cfg(feature = "third-motor")]
+            Report::NotSquared { at, error } => {
+                self.give_up_homing(at, Alarm::of_squaring(error), format_args!("{error}"));
+            }
             Report::Jogged { at } => {
                 self.interpreter.stand_at(at);
                 self.stopped = true;
@@ -323,6 +361,8 @@ impl<P: Pens> Grbl<P> {
                 match why {
                     Stop::Emergency => self.alarm(Alarm::EMERGENCY),
                     Stop::Limit { .. } => self.alarm(Alarm::HARD_LIMIT),
+                    #[cfg(feature = "third-motor")]
+                    Stop::LimitZ { .. } => self.alarm(Alarm::HARD_LIMIT),
                     Stop::Reset { during: Activity::Home } => self.alarm(Alarm::HOMING_RESET),
                     Stop::Reset { during: Activity::Run | Activity::Hold { stands: false } } => {
                         self.alarm(Alarm::ABORT);
@@ -338,6 +378,16 @@ impl<P: Pens> Grbl<P> {
                     self.answer(Err(Code::LOCKED));
                 }
             }
+        }
+    }
+
+    #[cfg(feature = "third-motor")]
+    fn give_up_homing(&mut self, at: Point, alarm: Alarm, why: fmt::Arguments<'_>) {
+        self.interpreter.stand_at(at);
+        self.alarm(alarm);
+        self.out.line(format_args!("[MSG:{why}]"));
+        if self.wait.take().is_some() {
+            self.error(Code::LOCKED);
         }
     }
 
@@ -379,6 +429,10 @@ impl<P: Pens> Grbl<P> {
             b"RST=#" => {
                 self.out.line(format_args!("[MSG:Restoring defaults]"));
                 self.interpreter.restore_origins();
+                #[cfg(feature = "third-motor")]
+                if let Some(heights) = self.heights.get_mut() {
+                    heights.restore_origins();
+                }
                 self.begin_anew(status.at);
             }
             b"RST=$" | b"RST=*" if self.restores(status) => {
@@ -428,6 +482,11 @@ impl<P: Pens> Grbl<P> {
     fn begin_anew(&mut self, at: Point) {
         self.interpreter.reset();
         self.interpreter.stand_at(at);
+        #[cfg(feature = "third-motor")]
+        if let Some(heights) = self.heights.get_mut() {
+            heights.reset();
+            heights.stand_still();
+        }
         self.reports_to_offset = 0;
         self.greeting = true;
     }
@@ -440,7 +499,7 @@ impl<P: Pens> Grbl<P> {
 
     /// Sends a command that may come after a stop.
     fn command(&mut self, link: &mut Link, command: Command) {
-        self.jogs = matches!(command, Command::Jog { .. });
+        self.jogs = command.is_jog();
         if core::mem::take(&mut self.stopped) {
             send(link, Command::GoOn);
         }

@@ -1,9 +1,11 @@
 //! The answer to `?`.
 
 use super::super::{Activity, Link, Percents, Status, settings::FULL_POWER};
-use super::codes::coordinates;
+use super::codes::{coordinates, placed};
 use super::listing::BLOCKS;
 use super::{Grbl, MOST_COMMANDS, Mode, Pens, REPORTS_WITHOUT_OFFSET};
+#[cfg(feature = "third-motor")]
+use crate::Axis;
 use crate::decimal_text::{Plain, Thousandths, Whole};
 use core::fmt;
 
@@ -22,7 +24,10 @@ impl<P: Pens> Grbl<P> {
             Activity::Hold { stands: false } => "Hold:1",
             Activity::Home => "Home",
         });
-        let (x, y) = coordinates(status.at.x, status.at.y);
+        #[cfg(not(feature = "third-motor"))]
+        let at = coordinates(status.at.x, status.at.y);
+        #[cfg(feature = "third-motor")]
+        let at = coordinates(status.at.x, status.at.y, status.z_mm);
         // As Grbl counts: blocks that are not over, of the number that it reports, even if there is room for
         // more.
         let queued = link.commands.room().saturating_sub(MOST_COMMANDS).min(BLOCKS);
@@ -33,14 +38,25 @@ impl<P: Pens> Grbl<P> {
         let power =
             (u32::from(status.laser) * u32::from(FULL_POWER) + u32::from(u16::MAX / 2)) / u32::from(u16::MAX);
         let power = Whole(power.into());
+        #[cfg(feature = "third-motor")]
+        let second = {
+            let is_pressed = status.second_switches.lower || status.second_switches.upper;
+            self.settings.second.filter(|_| is_pressed).map(|second| second.axis)
+        };
         let pins = Pins {
             x: status.limits.x_min || status.limits.x_max,
             y: status.limits.y_min || status.limits.y_max,
+            #[cfg(feature = "third-motor")]
+            second,
+            #[cfg(feature = "third-motor")]
+            z: status.z_switches.lower || status.z_switches.upper,
         };
         let offset = self.offset();
         let overrides = self.overrides_told(status.percents, offset.0.is_some());
-        self.out.line(format_args!(
-            "<{state}|MPos:{x},{y},0.000|Bf:{blocks},{bytes}|FS:{feed_mm_min},{power}{pins}{offset}{overrides}>"
+        self.out.line(placed!(
+            "<{}|MPos:"(state),
+            at,
+            "|Bf:{},{}|FS:{},{}{}{}{}>"(blocks, bytes, feed_mm_min, power, pins, offset, overrides)
         ));
     }
 
@@ -62,7 +78,14 @@ impl<P: Pens> Grbl<P> {
         }
         self.reports_to_offset = REPORTS_WITHOUT_OFFSET;
         let offset = self.interpreter.modes().offset;
-        Offset(Some(coordinates(offset.x, offset.y)))
+        #[cfg(not(feature = "third-motor"))]
+        let offset = coordinates(offset.x, offset.y);
+        #[cfg(feature = "third-motor")]
+        let offset = {
+            let system = self.interpreter.modes().system;
+            coordinates(offset.x, offset.y, self.told_heights().map(|heights| heights.offset(system)))
+        };
+        Offset(Some(offset))
     }
 }
 
@@ -82,24 +105,39 @@ impl fmt::Display for Told {
 struct Pins {
     x: bool,
     y: bool,
+    #[cfg(feature = "third-motor")]
+    second: Option<Axis>,
+    #[cfg(feature = "third-motor")]
+    z: bool,
 }
 
 impl fmt::Display for Pins {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (self.x, self.y) {
+        let (x, y) = (self.x, self.y);
+        #[cfg(feature = "third-motor")]
+        let (x, y) = (x || self.second == Some(Axis::X), y || self.second == Some(Axis::Y));
+        match (x, y) {
             (false, false) => Ok(()),
             (true, false) => f.write_str("|Pn:X"),
             (false, true) => f.write_str("|Pn:Y"),
             (true, true) => f.write_str("|Pn:XY"),
+        }?;
+        #[cfg(feature = "third-motor")]
+        if self.z {
+            return f.write_str(if x || y { "Z" } else { "|Pn:Z" });
         }
+        Ok(())
     }
 }
 
 /// `|WCO:`.
+#[cfg(not(feature = "third-motor"))]
 struct Offset(Option<(Thousandths, Thousandths)>);
+#[cfg(feature = "third-motor")]
+struct Offset(Option<(Thousandths, Thousandths, Thousandths)>);
 
 impl fmt::Display for Offset {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.map_or(Ok(()), |(x, y)| write!(f, "|WCO:{x},{y},0.000"))
+        self.0.map_or(Ok(()), |offset| f.write_fmt(placed!("|WCO:"(), offset, ""())))
     }
 }

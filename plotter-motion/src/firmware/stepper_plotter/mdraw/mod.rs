@@ -96,6 +96,8 @@ impl MDraw {
     #[expect(clippy::unused_self, reason = "as the other dialect has it")]
     pub(super) const fn set_startup_lines(&mut self, _: &StartupLines) {}
 
+    pub(super) const fn set_homed(&mut self, _: crate::homing::Homed) {}
+
     /// The port has been opened anew, at `at`.
     pub(super) fn restart(&mut self, at: Point) {
         *self = Self::new(StepperPlotterSettings { stored: self.stored, ..self.settings });
@@ -162,6 +164,16 @@ impl MDraw {
             Report::Homed { at, result } => {
                 self.stand_at(at);
                 result.err().map(Refusal::Homing)
+            }
+            #[cfg(feature = "third-motor")]
+            Report::NotHomedZ { at, error } => {
+                self.stand_at(at);
+                Some(Refusal::HomingZ(error))
+            }
+            #[cfg(feature = "third-motor")]
+            Report::NotSquared { at, error } => {
+                self.stand_at(at);
+                Some(Refusal::Squaring(error))
             }
             Report::Stopped { at, why } => {
                 self.stand_at(at);

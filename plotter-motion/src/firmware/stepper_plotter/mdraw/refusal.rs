@@ -11,11 +11,26 @@ pub(super) enum Refusal {
     TooLong,
     Broken,
     Early,
-    NoNumber { command: &'static str },
-    Range { command: &'static str, least: i32, most: i32 },
-    Area { x: f32, y: f32, width_mm: u16, height_mm: u16 },
+    NoNumber {
+        command: &'static str,
+    },
+    Range {
+        command: &'static str,
+        least: i32,
+        most: i32,
+    },
+    Area {
+        x: f32,
+        y: f32,
+        width_mm: u16,
+        height_mm: u16,
+    },
     Stopped(Stop),
     Homing(HomingError),
+    #[cfg(feature = "third-motor")]
+    HomingZ(super::super::ZHomingError),
+    #[cfg(feature = "third-motor")]
+    Squaring(super::super::SquaringError),
 }
 
 impl fmt::Display for Refusal {
@@ -35,6 +50,10 @@ impl fmt::Display for Refusal {
             }
             Self::Stopped(stop) => stop.fmt(f),
             Self::Homing(error) => error.fmt(f),
+            #[cfg(feature = "third-motor")]
+            Self::HomingZ(error) => error.fmt(f),
+            #[cfg(feature = "third-motor")]
+            Self::Squaring(error) => error.fmt(f),
         }
     }
 }

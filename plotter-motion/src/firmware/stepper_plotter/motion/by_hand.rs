@@ -1,6 +1,6 @@
 //! What a person does on the way: jogs that are cancelled, other shares of the speeds, other settings.
 
-use super::super::{Command, Dialect, Link, Percents, Report, Setting, StepperPlotterSettings};
+use super::super::{Dialect, Link, Percents, Report, Setting, StepperPlotterSettings};
 use super::{Motion, State, darken, step_gen};
 use crate::planner::{Keep as _, Modes};
 use crate::{Pen, Planner};
@@ -10,7 +10,7 @@ impl<M: Modes> Motion<M> {
     pub(super) fn jogs_now(&self, link: &Link) -> bool {
         let waits = !self.unfinished
             && self.planner.is_empty()
-            && matches!(link.commands.first(), Some(Command::Jog { .. }));
+            && link.commands.first().is_some_and(|command| command.is_jog());
         self.state == State::Ready && (self.jogs || waits)
     }
 
@@ -18,7 +18,7 @@ impl<M: Modes> Motion<M> {
     pub(super) fn cancel(&mut self, link: &mut Link) {
         (self.jogs, self.cancelling) = (true, true);
         self.start_at = None;
-        while let Some(Command::Jog { .. }) = link.commands.first() {
+        while link.commands.first().is_some_and(|command| command.is_jog()) {
             link.commands.pop();
         }
         self.planner.hold();
@@ -70,6 +70,8 @@ impl<M: Modes> Motion<M> {
             play.begin_anew(&settings);
         }
         self.planner.clear(self.position_mm());
+        #[cfg(feature = "third-motor")]
+        self.tell_z();
         darken(&mut self.planner);
         self.override_speeds();
     }

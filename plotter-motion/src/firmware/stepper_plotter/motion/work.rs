@@ -20,6 +20,8 @@ impl<M: Modes> Motion<M> {
     pub(super) fn give(&mut self, event: MotorEvent, link: &mut Link) -> Option<Pulse<'static>> {
         match event {
             MotorEvent::Step(step) => return self.pass(step, link),
+            #[cfg(feature = "third-motor")]
+            MotorEvent::StepZ(step) => return self.pass_z(step, link),
             // A gate that was stopped when the machine was made is noticed by what moves first.
             MotorEvent::Pen(_) if self.gate.is_stopped() => self.stop(Stop::Emergency, link),
             MotorEvent::Pen(pen) => {
@@ -39,7 +41,18 @@ impl<M: Modes> Motion<M> {
 
     /// The one way of a step to the motors.
     pub(super) fn pass(&mut self, step: StepPair, link: &mut Link) -> Option<Pulse<'static>> {
-        match self.gate.pass_step(step).map(Pulse::kept) {
+        let passed = self.gate.pass_step(step).map(Pulse::kept);
+        self.count(passed, link)
+    }
+
+    /// A step that has passed the gate counts as made; one that has not stops the machine.
+    #[inline(always)] // from one place where there are two motors
+    pub(super) fn count(
+        &mut self,
+        passed: Result<Pulse<'static>, Blocked>,
+        link: &mut Link,
+    ) -> Option<Pulse<'static>> {
+        match passed {
             Ok(pulse) => {
                 self.position.x = self.position.x.saturating_add(pulse.x().into());
                 self.position.y = self.position.y.saturating_add(pulse.y().into());
@@ -56,6 +69,8 @@ impl<M: Modes> Motion<M> {
                 self.stop(Stop::Limit { axis, end }, link);
                 None
             }
+            #[cfg(feature = "third-motor")]
+            Err(Blocked::LimitZ { .. }) => None,
         }
     }
 
@@ -168,6 +183,10 @@ impl<M: Modes> Motion<M> {
 
     /// Plans what the queue has and the planner takes.
     pub(super) fn fill(&mut self, now: Duration, link: &mut Link) {
+        #[cfg(feature = "third-motor")]
+        if M::Z {
+            return self.fill_rising(now, link);
+        }
         while self.planner.has_room()
             && !self.cancelling
             && let Some(Command::Jog { to, speed_mm_s }) = link.commands.first()
@@ -191,11 +210,19 @@ impl<M: Modes> Motion<M> {
             debug_assert!(planned.is_ok(), "the receive side has looked at {op:?}: {planned:?}");
             self.taken(now);
         }
-        // What comes next waits for a standstill: nothing more is planned together with this.
+        self.end_what_waits(link);
+    }
+
+    /// What comes next waits for a standstill: nothing more is planned together with this.
+    pub(super) fn end_what_waits(&mut self, link: &Link) {
         let jogs = self.jogs;
         let waits = |next| match next {
             Command::Plot(_) => jogs,
             Command::Jog { .. } => !jogs,
+            #[cfg(feature = "third-motor")]
+            Command::ToZ(_) => jogs,
+            #[cfg(feature = "third-motor")]
+            Command::JogZ { .. } => !jogs,
             _ => true,
         };
         if self.unfinished && !self.cancelling && link.commands.first().is_some_and(waits) {
@@ -236,6 +263,8 @@ impl<M: Modes> Motion<M> {
                     self.settings.pen_settle
                 };
                 let run = HomingRun::new(now.saturating_add(settle));
+                #[cfg(feature = "third-motor")]
+                self.begin_homing_z();
                 self.state = State::Homing(run);
             }
             Command::Pause => self.hold(),
@@ -247,6 +276,8 @@ impl<M: Modes> Motion<M> {
                 let _ = link.reports.push(Report::Done);
             }
             Command::GoOn => {}
+            #[cfg(feature = "third-motor")]
+            Command::ToZ(_) | Command::JogZ { .. } => {}
             Command::Unlock => {
                 self.gate.reset();
             }
@@ -261,8 +292,19 @@ impl<M: Modes> Motion<M> {
 
     /// One turn of homing.
     pub(super) fn home(&mut self, now: Duration, drivers: Drivers, link: &mut Link) -> Option<Step<'static>> {
+        #[cfg(feature = "third-motor")]
+        if M::Z && self.homes_z() {
+            let step = self.home_z(now, drivers, link);
+            if step.is_some() || self.homes_z() || self.state == State::Ready {
+                return step;
+            }
+        }
+        #[cfg(feature = "third-motor")]
+        let limits = self.homing_limits();
         let State::Homing(run) = &mut self.state else { return None };
-        let result = match run.next(&self.settings, self.gate.limits()) {
+        #[cfg(not(feature = "third-motor"))]
+        let limits = self.gate.limits();
+        let result = match run.next(&self.settings, limits) {
             Ok((at, _)) if !has_come(at, now) || drivers == Drivers::Busy => {
                 self.due = Some(at);
                 return None;
@@ -274,7 +316,13 @@ impl<M: Modes> Motion<M> {
             }
             Err(result) => result,
         };
-        if result.is_ok() {
+        if let Ok(homed) = result {
+            if let Some(measured) = self.measured.get_mut() {
+                let StepPoint { x, y } = self.position;
+                let off = StepPoint::new(x.saturating_neg(), y.saturating_neg());
+                measured.off = measured.is_placed.then_some(off);
+                (measured.homed, measured.is_placed) = (Some(homed), true);
+            }
             self.position = StepPoint::default();
             #[cfg(feature = "step-ahead")]
             self.ahead.homed();
