@@ -80,6 +80,7 @@ impl Machine {
                 check_stepper_motor(&config)?;
                 check_stepper(&config.x, &X, config.area.width_mm, &config)?;
                 check_stepper(&config.y, &Y, config.area.height_mm, &config)?;
+                #[cfg(feature = "third-motor")]
                 check_third_axis(&config)?;
             }
         }
@@ -289,6 +290,7 @@ fn check_stepper_motor(config: &MachineConfig) -> Result<(), ConfigError> {
     )
 }
 
+#[cfg(feature = "third-motor")]
 fn check_third_axis(config: &MachineConfig) -> Result<(), ConfigError> {
     /// Greatest rate of a motor, pulses/s: what a controller's clock of microseconds gives out evenly.
     const MOST_HZ: f64 = 1e5;

@@ -2,9 +2,11 @@
 
 use super::{
     BeltConfig, DriveChoice, HomingConfig, KinematicsChoice, KinematicsConfig, LaserConfig, MachineName,
-    PenConfig, PlannerConfig, PointToPointConfig, SecondMotorConfig, SheetConfig, StepperConfig,
-    TransmissionConfig, VectorizeConfig, ZConfig,
+    PenConfig, PlannerConfig, PointToPointConfig, SheetConfig, StepperConfig, TransmissionConfig,
+    VectorizeConfig,
 };
+#[cfg(feature = "third-motor")]
+use super::{SecondMotorConfig, ZConfig};
 use crate::plant::StepperSettings;
 
 /// What a machine's description says, not yet checked: [`Machine::new`](crate::Machine::new) does that.
@@ -42,8 +44,10 @@ pub struct MachineConfig {
     /// How it finds the ends of its axes.
     pub homing: HomingConfig,
     /// A third axis.
+    #[cfg(feature = "third-motor")]
     pub z: ZConfig,
     /// Two motors on an axis.
+    #[cfg(feature = "third-motor")]
     pub second_motor: SecondMotorConfig,
     /// Its motors, both alike, as they are simulated.
     pub stepper_motor: StepperSettings,
@@ -474,7 +478,9 @@ impl Default for MachineConfig {
             pen: PenConfig::default(),
             laser: LaserConfig::default(),
             homing: HomingConfig::default(),
+            #[cfg(feature = "third-motor")]
             z: ZConfig::default(),
+            #[cfg(feature = "third-motor")]
             second_motor: SecondMotorConfig::default(),
             stepper_motor: StepperSettings::default(),
             vectorize: VectorizeConfig::default(),

@@ -39,8 +39,10 @@ pub use name::{FileName, MachineName, ShortText};
 pub use sheet::SheetConfig;
 pub use stepper::{
     AccelChoice, DriveChoice, HomingConfig, LaserConfig, PathChoice, PenConfig, PenLift, PlannerConfig,
-    SecondMotorChoice, SecondMotorConfig, StepperConfig, ZConfig,
+    StepperConfig,
 };
+#[cfg(feature = "third-motor")]
+pub use stepper::{SecondMotorChoice, SecondMotorConfig, ZConfig};
 #[cfg(feature = "toml")]
 pub use toml_error::{TomlError, TomlPlace};
 pub use transmission::TransmissionConfig;

@@ -233,6 +233,7 @@ impl Default for HomingConfig {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[cfg(feature = "third-motor")]
 pub struct ZConfig {
     /// Whether there is one.
     pub enabled: bool,
@@ -256,6 +257,7 @@ pub struct ZConfig {
     pub start_rate_hz: f64,
 }
 
+#[cfg(feature = "third-motor")]
 impl Default for ZConfig {
     /// None; of one a spindle of 8 mm a turn with 3200 steps.
     fn default() -> Self {
@@ -278,6 +280,7 @@ impl Default for ZConfig {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 #[non_exhaustive]
+#[cfg(feature = "third-motor")]
 pub enum SecondMotorChoice {
     /// Neither.
     #[default]
@@ -295,6 +298,7 @@ pub enum SecondMotorChoice {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[cfg(feature = "third-motor")]
 pub struct SecondMotorConfig {
     /// Which axis has two.
     pub axis: SecondMotorChoice,
@@ -305,6 +309,7 @@ pub struct SecondMotorConfig {
     pub max_skew_mm: f64,
 }
 
+#[cfg(feature = "third-motor")]
 impl Default for SecondMotorConfig {
     /// None.
     fn default() -> Self {

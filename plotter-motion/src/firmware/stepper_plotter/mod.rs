@@ -126,9 +126,9 @@
 //!   only looked at.
 //! - An arc in the plane of `G18` or `G19` is looked at as Grbl does, and is drawn as what it is seen from
 //!   above, a line to its end. `G43.1` adds to a height, until `G49`.
-//! - `$H` warns (`[MSG:Warning: …]`) of an axis that is not as long between its switches as at the homing before,
-//!   which a firmware may have kept ([`StepperPlotter::homed`]), and of one that is shorter than its side of the
-//!   area.
+//! - `$H` warns (`[MSG:Warning: …]`) of an axis that is not as long between its switches as at the homing
+//!   before, which a firmware may have kept ([`StepperPlotter::homed`]), and of one that is shorter than its
+//!   side of the area.
 //! - With `$22=1` a machine that is switched on is locked until `$H` or `$X`; without it `$H` is `error:5`.
 //!   `$n=value` changes what [`Setting`] lists, at rest: out of range it is `error:52` (grblHAL's), beyond
 //!   100,000 steps/s `error:12`, for what cannot be changed `error:3`, unless it says what is so already.
@@ -144,10 +144,11 @@
 //!   `G30.1`; a reset keeps them, switching off does not. By `G93` the `F` of a line is one of its time.
 //! - Words that Grbl does not know are errors ([`Words::Grbl`](crate::gcode::Words::Grbl)), unless the pen is
 //!   lifted by those of another firmware.
-//! - With a third axis that words move (feature `third-motor`, `StepperPlotterSettings::z`) Z is one as X and Y are:
-//!   lines and arcs end at its height, `?` tells it, `G10`, `G28`, `G30`, `G43.1`, `G92` and `$J=` have it, `$102`,
-//!   `$112`, `$122` and `$132` are its own, and outside its travel it is `ALARM:2`. What rises is timed by its way in
-//!   space, `F` too; by `G93` it is `error:20`. Without one, Z is what a text says of its pen, and is told as 0.
+//! - With a third axis that words move (feature `third-motor`, `StepperPlotterSettings::z`) Z is one as X
+//!   and Y are: lines and arcs end at its height, `?` tells it, `G10`, `G28`, `G30`, `G43.1`, `G92` and
+//!   `$J=` have it, `$102`, `$112`, `$122` and `$132` are its own, and outside its travel it is `ALARM:2`.
+//!   What rises is timed by its way in space, `F` too; by `G93` it is `error:20`. Without one, Z is what a
+//!   text says of its pen, and is told as 0.
 //! - Probes and the safety door are not there; a line that needs one is `error:20` or `error:3`.
 //!   [`SpindlePen`] leaves out start-up lines, `$RST=$`, `$RST=*`, other planes and lengths as well,
 //!   [`ExactOnly`](crate::planner::ExactOnly) `$RST=$` and `$RST=*`.
@@ -171,10 +172,10 @@
 //!
 //! # A third motor
 //!
-//! With the feature `third-motor` and [`ThreeAxes`](crate::planner::ThreeAxes) a machine has a third axis (`ZAxis`), a
-//! second motor on x or y (`SecondMotor`), or both. Their steps are given by the same [`StepperPlotter::poll`]: z's
-//! alone ([`Pulse::z`](crate::safety::Pulse)), the second motor's with those of the first. Homing begins with z,
-//! upwards, then makes the two motors square, then homes x and y.
+//! With the feature `third-motor` and [`ThreeAxes`](crate::planner::ThreeAxes) a machine has a third axis
+//! (`ZAxis`), a second motor on x or y (`SecondMotor`), or both. Their steps are given by the same
+//! [`StepperPlotter::poll`]: z's alone ([`Pulse::z`](crate::safety::Pulse)), the second motor's with those
+//! of the first. Homing begins with z, upwards, then makes the two motors square, then homes x and y.
 //!
 //! ```
 //! # #[cfg(feature = "third-motor")] {
