@@ -20,6 +20,8 @@ pub mod record;
 pub mod resume;
 #[cfg(feature = "serial")]
 pub mod serial;
+#[cfg(feature = "live")]
+pub mod simulation;
 pub mod transport;
 pub mod virtual_plotter;
 

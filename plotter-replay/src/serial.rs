@@ -228,6 +228,24 @@ impl Port {
         })
     }
 
+    /// Sends as many of `bytes` as the port takes at once, which may be none; says how many.
+    ///
+    /// # Errors
+    ///
+    /// [`PortError`] if the port is gone.
+    pub fn offer(&mut self, bytes: &[u8]) -> Result<usize, PortError> {
+        self.inner.set_timeout(Duration::from_millis(1)).map_err(|error| self.other(&error.into()))?;
+        let result = match self.inner.write(bytes) {
+            Ok(count) => Ok(count),
+            Err(error) if matches!(error.kind(), io::ErrorKind::TimedOut | io::ErrorKind::Interrupted) => {
+                Ok(0)
+            }
+            Err(error) => Err(self.other(&error)),
+        };
+        let restored = self.inner.set_timeout(SEND_WITHIN).map_err(|error| self.other(&error.into()));
+        restored.and(result)
+    }
+
     /// Waits at most `wait` for bytes; says how many came, which may be none.
     ///
     /// # Errors

@@ -44,7 +44,10 @@ impl Rerunnable {
         let machine = machine.map(|path| read_machine(Some(path))).transpose()?;
         let header = traits.header(&contents.header);
         let said = |key| header.text(key);
-        if said("protocol") == Some("counts") && said("controller") != Some("marking-board") {
+        if said("protocol") == Some("counts")
+            && said("controller") != Some("marking-board")
+            && machine.is_none()
+        {
             return Err(format!(
                 "{}: its protocol is \"counts\", and only a controller that was led by bytes or by moves on its line can be run \
                  again; `render` shows what it did",

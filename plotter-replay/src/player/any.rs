@@ -2,7 +2,10 @@
 
 use super::machine::gate;
 use super::told::Told;
-use super::{Controller, EdgeSource, LinkedController, LinkedMachine, MachineController, RecordingTraits};
+use super::{
+    AnsweringBoard, Controller, EdgeSource, LinkedController, LinkedMachine, MachineController,
+    RecordingTraits,
+};
 use crate::log::{self, Header};
 use core::fmt;
 use plotter_motion::control::ChosenController;
@@ -94,6 +97,9 @@ impl AnyController {
     ) -> Result<Box<dyn Controller>, ControllerError> {
         let machine = machine_of(header, machine)?;
         Ok(match machine.kind() {
+            MachineKind::Belt if header.text("protocol") == Some("counts") => {
+                Box::new(AnsweringBoard::new(&machine))
+            }
             MachineKind::Belt => Box::new(MarkingBoard::<ChosenController>::of(&machine, gate())),
             MachineKind::Steppers => {
                 let dialect =

@@ -38,4 +38,6 @@ mod replay_of_the_gantry;
 mod replay_of_the_link;
 mod sim_drawings_over_lines;
 mod sim_link;
+#[cfg(all(feature = "cli", feature = "live", unix))]
+mod simulate;
 mod virtual_plotter;
