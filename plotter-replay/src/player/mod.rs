@@ -251,6 +251,10 @@ impl<C: Controller> Check<C> {
 
     /// The same for steps and the pen.
     fn compare_acts(&mut self, index: u64, now: Duration) -> Result<(), Box<Difference>> {
+        if self.run.has_no_acts() {
+            self.run.did.clear();
+            return Ok(());
+        }
         loop {
             match (self.acted.front().copied(), self.run.did.front().copied()) {
                 (Some((at, time, act)), Some((done, did))) => {

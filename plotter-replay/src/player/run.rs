@@ -276,6 +276,11 @@ impl<C: Controller> Run<C> {
         self.fetch()
     }
 
+    /// Whether the recording has no steps to compare with, though the controller makes some.
+    pub(super) fn has_no_acts(&self) -> bool {
+        self.edges == EdgeSource::Pulses && self.controller.makes_steps()
+    }
+
     fn takes_edges(&self) -> bool {
         self.edges != EdgeSource::Pulses && !self.controller.makes_steps()
     }

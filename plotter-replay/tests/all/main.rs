@@ -20,6 +20,7 @@ mod golden_presets;
 mod house;
 mod import;
 mod line;
+mod lines_in_logs;
 mod linked_session;
 #[cfg(all(feature = "cli", feature = "live"))]
 mod live_command;
