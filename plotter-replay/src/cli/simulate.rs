@@ -2,7 +2,10 @@
 
 use super::commands::{Done, Verdict, cannot, is_free, read_file, say};
 use super::machine::{clock_bits, read_machine, simulated_header};
-use crate::live::{Line, MachineLog, PortLine, SimulatedMachine, Spoken, TcpLine, Watch};
+use crate::PlotterSettings;
+use crate::live::{
+    Line, LivePage, MachineLog, PortLine, Server, Showing, SimulatedMachine, Spoken, TcpLine, Watch,
+};
 use crate::log::{self, LogFile};
 use crate::serial::Port;
 use crate::simulation::{Act, ActError, Script, Seen};
@@ -47,6 +50,12 @@ pub(crate) struct Simulate {
     /// Do to the machine what is typed here, too: lines of a script without the time.
     #[arg(long)]
     by_hand: bool,
+    /// Show it on a page of this computer, too, with an emergency stop.
+    #[arg(long)]
+    page: bool,
+    /// Port of 127.0.0.1 for the page; 0 takes any that is free.
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, requires = "page")]
+    http_port: u16,
     /// Record what happens inside it, each edge, duty and step too, so that `check` can run its controller
     /// again to the same bytes.
     #[arg(short, long, value_name = "LOG")]
@@ -81,20 +90,25 @@ impl Simulate {
             Some(path) => simulated.with_script(read_script(path)?),
             None => simulated,
         };
+        let (simulated, server) = match self.page {
+            true => self.on_page(simulated, &machine, spoken)?,
+            false => (simulated, None),
+        };
         let log = self.output.as_deref().map(|path| self.log(path, &machine, spoken)).transpose()?;
         let stop = Arc::new(AtomicBool::new(false));
         let asked = Arc::clone(&stop);
         ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed))
             .map_err(|error| format!("Ctrl-C cannot be waited for: {error}"))?;
+        let look = server.as_ref().map(|server| format!("look at {}", server.address()));
         let ended = if let Some(port) = self.tcp {
             let line = TcpLine::open(port).map_err(|error| error.to_string())?;
-            self.tell_where(&machine, line.name(), None, out);
+            tell_where(&machine, line.name(), look, out);
             self.serve(simulated, &log, &line, || line.take_news(), &stop, out)
         } else {
             let (end, port) = Port::pseudo_terminal().map_err(|error| error.to_string())?;
             let hint = matches!(spoken, Spoken::Link { .. } | Spoken::Digits)
                 .then(|| format!("try: {} live --port {} drawing.hpgl", super::program(), port.name()));
-            self.tell_where(&machine, port.name(), hint, out);
+            tell_where(&machine, port.name(), look.into_iter().chain(hint), out);
             let line = PortLine::new(end).map_err(|error| error.to_string())?;
             let ended = self.serve(simulated, &log, &line, Vec::new, &stop, out);
             drop(port); // kept open until here: a program that closes its end must not hang up the machine
@@ -107,10 +121,34 @@ impl Simulate {
         ended.map(|()| Verdict::Clean)
     }
 
-    fn tell_where(&self, machine: &Machine, port: &str, hint: Option<String>, out: &mut impl Write) {
-        say(out, &format!("{} is simulated on {port}", machine.config().name));
-        hint.iter().for_each(|hint| say(out, hint));
-        let _ = out.flush(); // who closed it has seen enough: the machine goes on
+    /// The machine on a page, which is there as long as its server.
+    fn on_page(
+        &self,
+        simulated: SimulatedMachine,
+        machine: &Machine,
+        spoken: Spoken,
+    ) -> Result<(SimulatedMachine, Option<Server>), String> {
+        let config = machine.config();
+        let settings = PlotterSettings::from_header(&simulated_header(machine, spoken))
+            .map_err(|error| error.to_string())?;
+        let (session, showing) = Showing::new(settings);
+        showing.recording(if self.output.is_some() { "on" } else { "none" });
+        let mut page = LivePage::new(config.name.as_str(), settings);
+        page.is_simulated = true;
+        page.about =
+            format!("{} is SIMULATED: no motor turns, at up to {} times its time.", config.name, self.speed);
+        page.stops = String::from(
+            "The stop presses the simulated machine's emergency stop button; Resume releases it.",
+        );
+        let fact = |name: &str, value: String| (name.to_owned(), value);
+        page.facts = vec![
+            fact("baud", config.serial.baud.to_string()),
+            fact("area", format!("{} × {} mm", config.area.width_mm, config.area.height_mm)),
+        ];
+        let area_mm = [0.0, 0.0, config.area.width_mm, config.area.height_mm];
+        let server = Server::open(session, self.http_port, |sources| page.finish(area_mm, sources))
+            .map_err(|error| error.to_string())?;
+        Ok((simulated.shown(showing), Some(server)))
     }
 
     fn spoken(&self, machine: &Machine) -> Spoken {
@@ -163,6 +201,12 @@ impl Simulate {
         };
         ended.map_err(|error| error.to_string())
     }
+}
+
+fn tell_where(machine: &Machine, port: &str, hints: impl IntoIterator<Item = String>, out: &mut impl Write) {
+    say(out, &format!("{} is simulated on {port}", machine.config().name));
+    hints.into_iter().for_each(|hint| say(out, &hint));
+    let _ = out.flush(); // who closed it has seen enough: the machine goes on
 }
 
 /// A simulated machine, whatever its log is written to.

@@ -4,7 +4,8 @@ use super::line::{Line, lock};
 use super::machine_line::MachineLine;
 use super::machine_log::MachineLog;
 use super::pace::Pace;
-use crate::log::Event;
+use super::{Command, Showing};
+use crate::log::{Event, Record};
 use crate::player::ControllerError;
 use crate::serial::{PortError, PortErrorKind};
 use crate::simulation::{Act, ActError, Script, Seen, Simulation, Take, Told, World, belt, steppers};
@@ -71,6 +72,7 @@ pub struct SimulatedMachine<W: Write = Sink> {
     told: Telemetry,
     telemetry: Arc<Mutex<Telemetry>>,
     script: Script,
+    showing: Option<Showing>,
     /// Bytes that the machine has said and that nobody took from the line.
     lost_answers: u64,
 }
@@ -222,6 +224,7 @@ impl SimulatedMachine {
             told: Telemetry::default(),
             telemetry: Arc::default(),
             script: Script::default(),
+            showing: None,
             lost_answers: 0,
         }
     }
@@ -232,11 +235,17 @@ impl SimulatedMachine {
         Self { script, ..self }
     }
 
+    /// The same, which shows what it does; what is asked of it there is done.
+    #[must_use]
+    pub fn shown(self, showing: Showing) -> Self {
+        Self { showing: Some(showing), ..self }
+    }
+
     /// The same, which writes all that it does into `log`.
     #[must_use]
     pub fn logged<W: Write>(self, log: MachineLog<W>) -> SimulatedMachine<W> {
-        let Self { bench, answers, told, telemetry, script, lost_answers, .. } = self;
-        SimulatedMachine { bench, log: Some(log), answers, told, telemetry, script, lost_answers }
+        let Self { bench, answers, told, telemetry, script, showing, lost_answers, .. } = self;
+        SimulatedMachine { bench, log: Some(log), answers, told, telemetry, script, showing, lost_answers }
     }
 }
 
@@ -362,7 +371,7 @@ impl<W: Write> SimulatedMachine<W> {
 
     /// Goes on until `to`, by whole time steps.
     pub(super) fn run_to(&mut self, to: Duration) {
-        let Self { bench, log, answers, told, telemetry, script, .. } = self;
+        let Self { bench, log, answers, told, telemetry, script, showing, .. } = self;
         while bench.now() < to {
             for act in script.due(bench.now()) {
                 if let (Err(error), Some(log)) = (bench.act(&act), &log) {
@@ -380,6 +389,9 @@ impl<W: Write> SimulatedMachine<W> {
                     Event::Drive { axis: Axis::Y, duty } => told.duty[1] = *duty,
                     _ => {}
                 }
+                if let Some(showing) = showing {
+                    showing.push(&Record { time: at, event: event.clone() });
+                }
                 if let Some(log) = log {
                     log.record(at, event);
                 }
@@ -394,6 +406,24 @@ impl<W: Write> SimulatedMachine<W> {
         *lock(telemetry) = *told;
         if let Some(log) = log {
             log.tick(told.time);
+        }
+        if let Some(showing) = showing {
+            showing.tick(told.time);
+            let asked = showing.commands();
+            asked.into_iter().for_each(|command| self.obey(command));
+        }
+    }
+
+    /// Somebody presses a button on the page.
+    fn obey(&mut self, command: Command) {
+        let (acts, order) = match command {
+            Command::Stop => (&[Act::Button { pressed: true }][..], Order::Stop),
+            Command::Resume => (&[Act::Button { pressed: false }, Act::Reset][..], Order::GoOn),
+            Command::Start | Command::Pause | Command::Clear => return,
+        };
+        // A machine without such a button is stopped over its line: by a byte between zeros, if need be.
+        if acts.iter().any(|act| self.bench.act(act).is_err()) {
+            self.take(&[0, order.byte(), 0]);
         }
     }
 }

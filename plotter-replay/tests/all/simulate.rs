@@ -295,17 +295,21 @@ fn floods_noise_halves_of_lines_and_a_port_that_is_closed_are_as_with_grbl_and_t
 fn a_host_that_never_reads_does_not_hold_up_the_machine() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
-    let simulated = small(&["--speed", "50"], here);
+    let mut simulated = small(&["--speed", "50"], here);
     let mut port = simulated.open();
     // Some 60 bytes each: far more than a line, a system and the machine keep.
     for _ in 0..100 {
         port.write_all(&[b'?'; 40]).unwrap();
         std::thread::sleep(Duration::from_millis(20));
     }
-    std::thread::sleep(Duration::from_millis(600));
+    let (mut line, began) = (String::new(), Instant::now());
+    while !line.contains("bytes said that nobody has read") {
+        assert!(began.elapsed() < PATIENCE, "{line}");
+        line.clear();
+        simulated.said.read_line(&mut line).unwrap();
+    }
     let (status, said) = simulated.end();
     assert_eq!(status, Some(0), "{said}");
-    assert!(said.contains("bytes said that nobody has read"), "{said}");
     assert_runs_again(here);
 }
 
@@ -372,4 +376,44 @@ fn a_script_that_is_none_is_refused_with_its_line() {
     let (status, said) = run(&["simulate", "--script", "script.txt"], here);
     assert_eq!(status, Some(2), "{said}");
     assert!(said.contains("script.txt: line 2: expected seconds"), "{said}");
+}
+
+#[test]
+fn the_page_of_a_machine_shows_where_it_is_and_stops_it() {
+    use tungstenite::client::IntoClientRequest as _;
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let mut simulated = small(&["--page"], here);
+    let mut line = String::new();
+    simulated.said.read_line(&mut line).unwrap();
+    let address = line.trim().strip_prefix("look at http://").unwrap().to_owned();
+    let host = address.split('/').next().unwrap();
+    let mut request = format!("ws://{address}socket").into_client_request().unwrap();
+    request.headers_mut().insert("Origin", format!("http://{host}").parse().unwrap());
+    let stream = std::net::TcpStream::connect(host).unwrap();
+    let (mut page, _) = tungstenite::client(request, stream).unwrap();
+    let mut port = simulated.open();
+    until(&mut *port, "Grbl 1.1");
+    port.write_all(b"G1 X30 F1200\n").unwrap();
+    let wait_for = |page: &mut tungstenite::WebSocket<_>, is: &dyn Fn(&serde_json::Value) -> bool| {
+        let began = Instant::now();
+        loop {
+            assert!(began.elapsed() < PATIENCE, "the page does not show it");
+            let message = page.read().unwrap();
+            let Ok(text) = message.to_text() else { continue };
+            let Ok(update) = serde_json::from_str(text) else { continue };
+            if is(&update) {
+                return;
+            }
+        }
+    };
+    // On its way, by the steps that it makes.
+    wait_for(&mut page, &|update| update["at"][0].as_f64().is_some_and(|x| (1.0..29.0).contains(&x)));
+    page.send(tungstenite::Message::text("stop")).unwrap();
+    until(&mut *port, "ALARM:10");
+    wait_for(&mut page, &|update| update["state"] == "stopped");
+    let (status, said) = simulated.end();
+    assert_eq!(status, Some(0), "{said}");
+    let info = assert_runs_again(here);
+    assert!(info.contains("emergency stops: 1"), "{info}");
 }
