@@ -127,6 +127,7 @@ impl<C: Controller> Run<C> {
     }
 
     /// Lets time pass for a controller that is not run any further.
+    #[cfg(feature = "live")]
     pub(crate) fn stand_until(&mut self, to: Duration) {
         self.now = self.now.max(to);
     }

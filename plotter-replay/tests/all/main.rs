@@ -17,6 +17,8 @@ mod damaged_logs;
 #[cfg(all(feature = "cli", feature = "live"))]
 mod devtools;
 mod golden_presets;
+#[cfg(feature = "live")]
+mod golden_simulated;
 mod house;
 mod import;
 mod line;
