@@ -252,6 +252,10 @@ impl Port {
     ///
     /// [`PortError`] if the port is gone.
     pub fn receive(&mut self, bytes: &mut [u8], wait: Duration) -> Result<usize, PortError> {
+        // Time-outs have a millisecond at least, which is much for who does not want to wait.
+        if wait.is_zero() && self.inner.bytes_to_read().is_ok_and(|waiting| waiting == 0) {
+            return Ok(0);
+        }
         let until = Instant::now() + wait;
         self.inner
             .set_timeout(wait.max(Duration::from_millis(1)))
