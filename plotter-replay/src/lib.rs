@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+mod date;
 mod frames;
 mod number;
 
@@ -20,6 +21,8 @@ pub mod record;
 pub mod resume;
 #[cfg(feature = "serial")]
 pub mod serial;
+#[cfg(feature = "live")]
+pub mod simulation;
 pub mod transport;
 pub mod virtual_plotter;
 

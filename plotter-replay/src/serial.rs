@@ -228,12 +228,34 @@ impl Port {
         })
     }
 
+    /// Sends as many of `bytes` as the port takes at once, which may be none; says how many.
+    ///
+    /// # Errors
+    ///
+    /// [`PortError`] if the port is gone.
+    pub fn offer(&mut self, bytes: &[u8]) -> Result<usize, PortError> {
+        self.inner.set_timeout(Duration::from_millis(1)).map_err(|error| self.other(&error.into()))?;
+        let result = match self.inner.write(bytes) {
+            Ok(count) => Ok(count),
+            Err(error) if matches!(error.kind(), io::ErrorKind::TimedOut | io::ErrorKind::Interrupted) => {
+                Ok(0)
+            }
+            Err(error) => Err(self.other(&error)),
+        };
+        let restored = self.inner.set_timeout(SEND_WITHIN).map_err(|error| self.other(&error.into()));
+        restored.and(result)
+    }
+
     /// Waits at most `wait` for bytes; says how many came, which may be none.
     ///
     /// # Errors
     ///
     /// [`PortError`] if the port is gone.
     pub fn receive(&mut self, bytes: &mut [u8], wait: Duration) -> Result<usize, PortError> {
+        // Time-outs have a millisecond at least, which is much for who does not want to wait.
+        if wait.is_zero() && self.inner.bytes_to_read().is_ok_and(|waiting| waiting == 0) {
+            return Ok(0);
+        }
         let until = Instant::now() + wait;
         self.inner
             .set_timeout(wait.max(Duration::from_millis(1)))

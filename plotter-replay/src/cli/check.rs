@@ -2,7 +2,7 @@
 
 use super::commands::{Contents, Done, Verdict, open, read, say, say_damage};
 use super::machine::read_machine;
-use crate::log::{Header, Record};
+use crate::log::{Event, Header, Record};
 use crate::{
     AnyController, CompareSettings, Controller, Outcome, Player, PlayerSettings,
     compare::{Decoder, compare},
@@ -44,7 +44,10 @@ impl Rerunnable {
         let machine = machine.map(|path| read_machine(Some(path))).transpose()?;
         let header = traits.header(&contents.header);
         let said = |key| header.text(key);
-        if said("protocol") == Some("counts") && said("controller") != Some("marking-board") {
+        if said("protocol") == Some("counts")
+            && said("controller") != Some("marking-board")
+            && machine.is_none()
+        {
             return Err(format!(
                 "{}: its protocol is \"counts\", and only a controller that was led by bytes or by moves on its line can be run \
                  again; `render` shows what it did",
@@ -67,6 +70,23 @@ impl Rerunnable {
             .map_err(|error| format!("{}: {error} (--machine)", self.log.display()))
     }
 
+    /// Which controller that is, and by what it was chosen.
+    fn which(&self) -> String {
+        let protocol = self.header.text("protocol").unwrap_or("digits");
+        match (&self.machine, self.header.text("controller"), AnyController::named(&self.header)) {
+            (Some(machine), ..) => {
+                format!("controller: that of {} (--machine), {protocol}", machine.config().name)
+            }
+            (None, Some(named), _) => format!("controller: {named} (as the log's header says), {protocol}"),
+            (None, None, Some(named)) => {
+                format!("controller: {named} (the preset for this protocol), {protocol}")
+            }
+            (None, None, None) => {
+                format!("controller: contouring (the preset; the log names none), {protocol}")
+            }
+        }
+    }
+
     /// How it is run again.
     pub(crate) fn settings(&self, controller: &dyn Controller) -> PlayerSettings {
         self.traits.settings(&self.header, controller.makes_steps())
@@ -84,8 +104,12 @@ impl Check {
         let first = log.controller()?;
         let mut settings = log.settings(&*first);
         settings.tolerance = self.tolerance_us.map_or(settings.tolerance, Duration::from_micros);
+        say(out, &log.which());
         let by = match settings.edges {
             EdgeSource::Records => None,
+            EdgeSource::Pulses if first.makes_steps() => {
+                Some("the controller makes its own, which are not compared")
+            }
             EdgeSource::Pulses => Some("taken from the pulses, which are not compared"),
             EdgeSource::Messages => Some(
                 "the motors are where the machine told, and not led; its messages are compared, not its frames",
@@ -95,6 +119,7 @@ impl Check {
             let within = settings.tolerance.as_micros();
             say(out, &format!("no edges in the log: {by}; times within {within} us"));
         }
+        let lacks_steps = settings.edges == EdgeSource::Pulses && first.makes_steps();
         say_damage(out, &log.contents);
         let player = Player::new(settings);
         let outcome = player.check(log.records(), first);
@@ -109,6 +134,8 @@ impl Check {
             let controller = log.controller().into_iter();
             controller
                 .flat_map(|controller| player.rerun_iter(log.records(), controller).map_while(Result::ok))
+                // What the log cannot have is not compared.
+                .filter(|record| !(lacks_steps && matches!(record.event, Event::Edge { .. } | Event::Pen(_))))
         };
         let wanted = CompareSettings { tolerance: settings.tolerance, ..CompareSettings::default() };
         let comparison = compare(&header, || player.inputs(log.records()), again, wanted);

@@ -9,7 +9,6 @@ use super::record::Record;
 use super::render::Render;
 use super::replay::Replay;
 use crate::log::{self, Damage, FileReader, Header, Summary};
-use crate::{PlotterSettings, VirtualPlotter};
 use clap::{ArgMatches, FromArgMatches as _, Subcommand};
 use std::io::{Read as _, Write};
 use std::path::Path;
@@ -202,12 +201,6 @@ pub(crate) fn read_all(
         }
     }
     Ok(Contents { header: reader.header().clone(), summary: reader.summary(), damage })
-}
-
-pub(crate) fn plotter_for(path: &Path) -> Result<VirtualPlotter, String> {
-    let settings = PlotterSettings::from_header(open(path)?.header())
-        .map_err(|error| format!("{}: {error}", path.display()))?;
-    Ok(VirtualPlotter::new(settings))
 }
 
 pub(crate) fn say_damage(out: &mut impl Write, contents: &Contents) {

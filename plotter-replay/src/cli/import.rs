@@ -72,6 +72,21 @@ impl From {
     }
 }
 
+/// A file that is taken away again, unless it has got another name by then.
+struct Part(PathBuf);
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.0); // it is gone where all went well
+    }
+}
+
+/// The name of a log that is being written, packed if `path` is.
+fn part_of(path: &Path) -> Part {
+    let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    Part(path.with_file_name(format!(".part-{name}")))
+}
+
 /// The beginning of a file that tells which tool wrote it, bytes.
 const BEGINNING: u64 = 16_384;
 
@@ -123,7 +138,9 @@ impl Import {
             .with_text("protocol", &self.protocol)
             .with_text("recorded_by", tool);
         let failed = |error: log::WriteError| format!("{}: {error}", self.out.display());
-        let mut writer = log::create(&self.out, &header).map_err(failed)?;
+        // Under another name until it is whole: what fails leaves no log, and the old one as it was.
+        let part = part_of(&self.out);
+        let mut writer = log::create(&part.0, &header).map_err(failed)?;
         let mut troubles = Vec::new();
         let imported = import(sources, &settings, &mut writer, |trouble| {
             if troubles.len() < super::commands::MOST_SHOWN {
@@ -133,6 +150,7 @@ impl Import {
         let Imported { host_bytes, controller_bytes, troubles: count, sides } =
             imported.map_err(|error| error.to_string())?;
         writer.finish().map_err(failed)?;
+        std::fs::rename(&part.0, &self.out).map_err(|error| cannot("written", &self.out, &error))?;
         for (name, side) in sides {
             let side = if side == Side::Host { "the host" } else { "the controller" };
             say(out, &format!("{name}: {side}"));

@@ -1,12 +1,15 @@
 //! `info`: what a log holds.
 
-use super::commands::{Done, Verdict, open, read, say, say_damage, say_first};
+use super::beginning::{Beginning, beginning, place};
+use super::commands::{Done, Verdict, read, say, say_damage, say_first};
 use crate::log::{Event, Record};
+use crate::virtual_plotter::LineCounts;
 use crate::{
     PlotterSettings, VirtualPlotter,
     compare::{ContourTally, Ways},
 };
 use clap::Args;
+use plotter_motion::Point;
 use std::io::Write;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -15,6 +18,9 @@ use std::time::Duration;
 pub(crate) struct Info {
     /// The log; packed if its name ends in .gz.
     log: PathBuf,
+    /// Where the pen is when the log begins, mm [default: where the machine first says to be, else the origin].
+    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
+    origin: Option<Point>,
 }
 
 /// Points of the path that are kept before they are measured: a log may be longer than the memory.
@@ -83,8 +89,19 @@ impl Gaps {
 impl Info {
     pub(crate) fn run(self, out: &mut impl Write) -> Done {
         let path = &self.log;
-        let settings = PlotterSettings::from_header(open(path)?.header())
-            .map_err(|error| format!("{}: {error}", path.display()))?;
+        let Beginning { settings, words: begins } = match beginning(path, self.origin) {
+            Ok(beginning) => beginning,
+            Err(error) => {
+                // What it holds is told all the same, but for what it means.
+                let contents = read(path, |_| {})?;
+                say(out, &path.display().to_string());
+                for (key, value) in contents.header.entries() {
+                    say(out, &format!("  {key}: {value}"));
+                }
+                say_damage(out, &contents);
+                return Err(error);
+            }
+        };
         let settings = PlotterSettings { max_points: POINTS, max_entries: ENTRIES, ..settings };
         let mut plotter = VirtualPlotter::new(settings);
         let mut contour = ContourTally::default();
@@ -144,6 +161,9 @@ impl Info {
         for (key, value) in contents.header.entries() {
             say(out, &format!("  {key}: {value}"));
         }
+        if let Some(date) = contents.header.number("began_unix_us").and_then(crate::date::of_unix_us) {
+            say(out, &format!("began {date}"));
+        }
         say_damage(out, &contents);
         let mut seconds = 0.0;
         if let (Some(first), Some(last)) = (contents.summary.first, contents.summary.last) {
@@ -163,6 +183,19 @@ impl Info {
         for (silence, from) in &gaps.longest {
             say(out, &format!("  {:.3} s from {} us", silence.as_secs_f64(), from.as_micros()));
         }
+        if let Some(words) = begins {
+            say(out, &words);
+        }
+        if let Some(lines) = plotter.line_counts() {
+            say_lines(out, &lines);
+            if !contents.header.has("x_mm_per_pulse") {
+                let (x, _) = plotter.resolution_per_mm();
+                say(
+                    out,
+                    &format!("the log does not say how long a step is: taken for one of {x:.2} to the mm"),
+                );
+            }
+        }
         say(out, &format!("targets: {} sent, {} reached", plotter.target_count(), plotter.reached_count()));
         if plotter.stop_count() > 0 {
             say(out, &format!("stopped over the line: {}", plotter.stop_count()));
@@ -175,7 +208,11 @@ impl Info {
                 if plotter.is_linked() { " (where the machine told its place: every 20 ms)" } else { "" };
             say(out, &format!("contour error: rms {:.4} mm, max {:.4} mm{told}", error.rms_mm, error.max_mm));
         }
-        if controller.bytes > 0 && counts.iter().any(|&(name, count)| name == "edges" && count == 0) {
+        let is_text = plotter.line_counts().is_some();
+        if !is_text
+            && controller.bytes > 0
+            && counts.iter().any(|&(name, count)| name == "edges" && count == 0)
+        {
             say(
                 out,
                 if plotter.is_linked() {
@@ -189,5 +226,23 @@ impl Info {
         say(out, &format!("anomalies: {}", plotter.anomaly_count()));
         say_first(out, plotter.anomalies(), plotter.anomaly_count());
         Ok(Verdict::of(contents.summary))
+    }
+}
+
+/// What of a session of text lines is known.
+fn say_lines(out: &mut impl Write, lines: &LineCounts) {
+    let LineCounts { sent, accepted, refused, told_until, assumed } = *lines;
+    say(out, &format!("lines: {sent} sent, {accepted} taken by the machine, {refused} refused"));
+    match told_until {
+        Some(until) => say(out, &format!("place: told by the machine up to {:.6} s", until.as_secs_f64())),
+        None => say(out, "place: never told by the machine"),
+    }
+    if assumed > 0 {
+        say(
+            out,
+            &format!(
+                "the last {assumed} moves were taken, and nothing says that they were made: drawn as they were sent"
+            ),
+        );
     }
 }

@@ -61,6 +61,63 @@ pub(crate) fn header_of(machine: &Machine, protocol: &str, boot: Option<u32>) ->
     }
 }
 
+/// What the log of a simulated machine says of it.
+#[cfg(all(feature = "live", unix))]
+pub(crate) fn simulated_header(machine: &Machine, spoken: crate::live::Spoken) -> Header {
+    use crate::live::Spoken;
+    let config = machine.config();
+    let header = match (spoken, machine.kind()) {
+        (_, MachineKind::Belt) => belt_header(machine),
+        (Spoken::Link { boot }, _) => header_of(machine, "link", Some(boot)),
+        (Spoken::Digits, _) => header_of(machine, "digits", None),
+        (Spoken::Grbl | Spoken::MDraw, _) => {
+            let header = Header::new()
+                .with_number("baud", config.serial.baud.into())
+                .with_text("protocol", if spoken == Spoken::Grbl { "grbl" } else { "mdraw" })
+                .with_text("machine", config.name.as_str());
+            // Another machine's controller is not that of the preset, and takes a description.
+            let is_preset = *config == MachineConfig::stepper_plotter();
+            let header = if is_preset { header.with_text("controller", "stepper-plotter") } else { header };
+            header
+                .with_decimal("x_mm_per_pulse", 1.0 / config.x.stepper.steps_per_mm)
+                .with_decimal("y_mm_per_pulse", 1.0 / config.y.stepper.steps_per_mm)
+        }
+    };
+    header.with_text("clock", "simulated")
+}
+
+#[cfg(all(feature = "live", unix))]
+fn belt_header(machine: &Machine) -> Header {
+    use plotter_motion::firmware::MarkingBoardSettings;
+    use plotter_motion::kinematics::BeltSigns;
+    let config = machine.config();
+    let settings = MarkingBoardSettings::of(machine);
+    let mm_per_pulse = 1.0 / settings.belt.steps_per_mm();
+    let signs = match settings.belt.signs() {
+        BeltSigns::DirectionTable => "direction-table",
+        BeltSigns::TrackingEquations => "tracking-equations",
+    };
+    let tolerance = match config.control.controller {
+        // Within the allowed error along both axes, one motor may be off by both.
+        ControllerChoice::Published => (2.0 * config.point_to_point.allowed_error_mm / mm_per_pulse).ceil(),
+        _ => 1.0,
+    };
+    let mut preset = MachineConfig::marking_board();
+    preset.control.controller = ControllerChoice::Published;
+    let header = Header::new()
+        .with_number("baud", config.serial.baud.into())
+        .with_text("protocol", "counts")
+        .with_text("machine", config.name.as_str());
+    let header = if *config == preset { header.with_text("controller", "marking-board") } else { header };
+    header
+        .with_text("belt_signs", signs)
+        .with_decimal("x_mm_per_pulse", mm_per_pulse)
+        .with_decimal("y_mm_per_pulse", mm_per_pulse)
+        .with_decimal("p1_x_mm", settings.start.x)
+        .with_decimal("p1_y_mm", settings.start.y)
+        .with_decimal("reached_tolerance_counts", tolerance)
+}
+
 /// How fast a simulated machine's time passes. No computer makes a million seconds of a machine in one.
 #[cfg(feature = "live")]
 pub(crate) fn speed(text: &str) -> Result<f64, String> {

@@ -11,6 +11,7 @@
 //! # Ok::<(), clap::Error>(())
 //! ```
 
+mod beginning;
 mod check;
 mod commands;
 mod compare;

@@ -1,6 +1,7 @@
 //! `render`: pictures and a page of what the motors did.
 
-use super::commands::{Contents, Done, Verdict, cannot, plotter_for, read_all, say, say_damage, say_first};
+use super::beginning::{beginning, place};
+use super::commands::{Contents, Done, Verdict, cannot, read_all, say, say_damage, say_first};
 use super::drawing::{DrawingFile, USUAL_COUNTS_PER_MM};
 use crate::{
     CanvasStyle, Chart, PageSettings, RecordingPage, VirtualPlotter,
@@ -8,7 +9,7 @@ use crate::{
     virtual_plotter::Leg,
 };
 use clap::Args;
-use plotter_motion::{Pen, PlotOp};
+use plotter_motion::{Pen, PlotOp, Point};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -44,6 +45,9 @@ pub(crate) struct Render {
     /// Mark what was drawn farther than this from its line, mm.
     #[arg(long, value_name = "MM", default_value_t = PageSettings::default().mark_mm, value_parser = length)]
     mark_mm: f64,
+    /// Where the pen is when the log begins, mm [default: where the machine first says to be, else the origin].
+    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
+    origin: Option<Point>,
     /// Show the moves with the pen up, too.
     #[arg(long)]
     travel: bool,
@@ -107,6 +111,9 @@ impl Render {
                 write(&path, html.as_bytes())?;
             }
         }
+        if let Some(words) = &drawn.begins {
+            say(out, words);
+        }
         if !drawn.drew {
             say(out, "nothing was drawn");
         }
@@ -123,7 +130,8 @@ impl Render {
         has_page: bool,
         has_picture: bool,
     ) -> Result<Drawn, String> {
-        let mut plotter = plotter_for(&self.log)?;
+        let beginning = beginning(&self.log, self.origin)?;
+        let mut plotter = VirtualPlotter::new(beginning.settings);
         let settings = *plotter.settings();
         let page_settings = PageSettings { mark_mm: self.mark_mm, ..PageSettings::default() };
         let mut page = has_page.then(|| RecordingPage::new(settings, page_settings));
@@ -161,7 +169,7 @@ impl Render {
         })?;
         plotter.finish();
         hand_on(plotter.legs(), &mut sketch);
-        Ok(Drawn { plotter, page, sketch, contents, drew })
+        Ok(Drawn { plotter, page, sketch, contents, drew, begins: beginning.words })
     }
 }
 
@@ -172,6 +180,8 @@ struct Drawn {
     sketch: Sketch,
     contents: Contents,
     drew: bool,
+    /// Where it begins, if that is not the origin.
+    begins: Option<String>,
 }
 
 /// A drawing, and how much of it could not be read.

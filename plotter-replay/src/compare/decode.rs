@@ -1,5 +1,6 @@
 //! [`Decoder`]: records in words.
 
+use super::text_lines::TextLines;
 use crate::frames::{FrameReader, FrameStream, Said};
 use crate::import::Side;
 use crate::log::{Event, Header, Record};
@@ -33,6 +34,8 @@ const MOST_OF_A_FRAME: u64 = 2_000;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Decoder {
+    /// Of a protocol of text lines.
+    lines: Option<TextLines>,
     /// `None` for a protocol of text lines.
     digits: Option<Receiver>,
     frames: FrameReader,
@@ -56,6 +59,7 @@ impl Decoder {
         let is_digits = header.text("protocol").is_none_or(|protocol| matches!(protocol, "digits" | "link"));
         let gap = Duration::try_from_secs_f64(gap_ms / 1e3).unwrap_or(Duration::from_millis(100));
         Self {
+            lines: TextLines::of(header.text("protocol")),
             digits: is_digits.then(|| Receiver::new(gap)),
             frames: FrameReader::default(),
             session: 0,
@@ -96,6 +100,11 @@ impl Decoder {
         };
         if let Some(words) = frames {
             return words;
+        }
+        match (&record.event, &mut self.lines) {
+            (Event::Host(bytes), Some(lines)) => return lines.words(Side::Host, bytes),
+            (Event::Controller(bytes), Some(lines)) => return lines.words(Side::Controller, bytes),
+            _ => {}
         }
         match &record.event {
             Event::Host(bytes) => self.host(record.time, bytes),

@@ -5,6 +5,7 @@ mod decode;
 mod difference;
 mod lane;
 mod logs;
+mod text_lines;
 
 pub use contour::{ContourError, ContourSample, ContourTally, Ways, contour_samples};
 pub use decode::Decoder;

@@ -186,8 +186,11 @@ pub fn import<W: Write>(
 fn file_sides(sources: &[Source<'_>], settings: &ImportSettings) -> Result<Vec<Option<Side>>, ImportError> {
     let mut sides = Vec::new();
     for source in sources {
-        let one_sided =
-            source.tool.is_one_sided() || source.tool == Tool::Saleae && is_one_sided(source, settings)?;
+        let one_sided = match source.tool {
+            Tool::Saleae => is_one_sided(source, settings)?.unwrap_or(false),
+            Tool::Sigrok => is_one_sided(source, settings)?.unwrap_or(true),
+            tool => tool.is_one_sided(),
+        };
         sides.push(match source.side {
             Some(side) => Some(side),
             None if !one_sided => None,
@@ -216,10 +219,11 @@ fn file_name(path: &str) -> String {
     std::path::Path::new(path).file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-fn is_one_sided(source: &Source<'_>, settings: &ImportSettings) -> Result<bool, ImportError> {
+/// Whether nothing in a file tells who sent its bytes; `None` without any.
+fn is_one_sided(source: &Source<'_>, settings: &ImportSettings) -> Result<Option<bool>, ImportError> {
     let mut input = Input::open(source, settings)?;
     while input.fill()?.is_some() {}
-    Ok(matches!(input.next, Some((_, Chunk { side: Saw::File, .. }))))
+    Ok(input.next.map(|(_, chunk)| chunk.side == Saw::File))
 }
 
 fn by_bytes(source: &Source<'_>, settings: &ImportSettings) -> Result<Option<Side>, ImportError> {

@@ -9,7 +9,7 @@
 //! | [`Tool::Jpnevulator`] | `jpnevulator --read --ascii --timing-print --pass --tty A --tty B` | the name of the port |
 //! | [`Tool::Candump`] | lines of `(seconds.micros) NAME XX` | the name |
 //! | [`Tool::Saleae`] | Logic 1 and 2: export of the async serial analyzer as CSV | a file, or the analyzer's name |
-//! | [`Tool::Sigrok`] | `sigrok-cli -P uart:rx=D0 -A uart=rx-data --protocol-decoder-samplenum` | a file |
+//! | [`Tool::Sigrok`] | `sigrok-cli -P uart:rx=D0 -A uart=rx-data --protocol-decoder-samplenum` | a file, or the decoder's and its row's name |
 //! | [`Tool::Raw`] | `cat /dev/ttyUSB0 >FILE`: bare bytes | a file; times are made from the baud rate |
 //! | [`Tool::PlotterRaw`] | `t_us,H\|D,hex` after a line `# plotter-raw/1` | `H` is the host |
 //!

@@ -14,6 +14,15 @@ pub trait Line: Send + Sync + fmt::Debug {
     /// [`PortError`] if they cannot be sent.
     fn send(&self, bytes: &[u8]) -> Result<(), PortError>;
 
+    /// Sends as many of `bytes` as the line takes at once; says how many that were.
+    ///
+    /// # Errors
+    ///
+    /// [`PortError`] if nothing will ever be taken any more.
+    fn offer(&self, bytes: &[u8]) -> Result<usize, PortError> {
+        self.send(bytes).map(|()| bytes.len())
+    }
+
     /// Waits at most `wait` for bytes, in the time of the line; says how many came, which may be none.
     ///
     /// # Errors
@@ -49,6 +58,10 @@ impl PortLine {
 impl Line for PortLine {
     fn send(&self, bytes: &[u8]) -> Result<(), PortError> {
         lock(&self.writer).send(bytes)
+    }
+
+    fn offer(&self, bytes: &[u8]) -> Result<usize, PortError> {
+        lock(&self.writer).offer(bytes)
     }
 
     fn receive(&self, bytes: &mut [u8], wait: Duration) -> Result<usize, PortError> {

@@ -5,7 +5,6 @@ use super::line::lock;
 use crate::BenchRecorder;
 use crate::log::{Event, Record, WriteError, Writer};
 use core::time::Duration;
-use plotter_motion::plant::BenchEvent;
 use std::io::Write;
 use std::sync::{Arc, Mutex};
 
@@ -40,12 +39,11 @@ impl<W: Write> MachineLog<W> {
     }
 
     /// What happens in the machine.
-    pub(super) fn record(&self, time: Duration, event: BenchEvent) {
+    pub(super) fn record(&self, time: Duration, event: Event) {
         let inside = &mut *lock(&self.inside);
         inside.now = time;
-        // (the bench has a host of its own, which sends nothing)
-        if let Some(recorder) = inside.recorder.as_mut().filter(|_| !matches!(event, BenchEvent::Host(_))) {
-            recorder.record(time, event);
+        if let Some(recorder) = &mut inside.recorder {
+            recorder.write(time, event);
         }
     }
 

@@ -23,7 +23,9 @@ mod sender;
 mod server;
 mod session;
 mod session_settings;
+mod showing;
 mod simulated;
+mod tcp_line;
 pub mod terminal;
 mod view;
 
@@ -36,4 +38,6 @@ pub use progress::Plan;
 pub use server::{Server, ServerError};
 pub use session::Session;
 pub use session_settings::{LinkChoice, SessionSettings};
-pub use simulated::{SimulatedMachine, Telemetry};
+pub use showing::Showing;
+pub use simulated::{SimulatedMachine, Spoken, Telemetry, Watch};
+pub use tcp_line::TcpLine;

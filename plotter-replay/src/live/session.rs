@@ -73,6 +73,10 @@ impl Session {
         session
     }
 
+    pub(super) fn of(shared: Arc<Shared>) -> Self {
+        Self { shared }
+    }
+
     /// Does what a person asks. An emergency stop is on the line when this returns.
     pub fn command(&self, command: Command) {
         if command == Command::Stop {

@@ -16,6 +16,8 @@ const MOST_WAY_POINTS: usize = 20_000;
 const MOST_SAMPLES: usize = 3_000;
 /// Time over which a speed is measured, as published for the marking board.
 const SPEED_OVER: Duration = Duration::from_millis(100);
+/// Edges after which the way is looked at.
+const EDGES_AT_ONCE: u32 = 64;
 /// Messages that are kept.
 const MOST_MESSAGES: usize = 50;
 
@@ -54,6 +56,8 @@ pub(super) struct View {
     pub(super) cleared: u32,
     from: Point,
     tolerance_mm: f64,
+    /// Edges since the way was looked at last.
+    edges: u32,
 }
 
 /// What a browser has already.
@@ -92,6 +96,7 @@ impl View {
             recording: String::new(),
             cleared: 0,
             tolerance_mm,
+            edges: 0,
         }
     }
 
@@ -99,9 +104,17 @@ impl View {
     pub(super) fn push(&mut self, record: &Record) {
         self.now = record.time;
         self.plotter.push(record);
-        if !matches!(record.event, Event::Controller(_)) {
-            return;
+        match record.event {
+            Event::Controller(_) => {}
+            // The way of a machine that tells its edges only: not each by itself.
+            Event::Edge { .. } if self.edges < EDGES_AT_ONCE => {
+                self.edges += 1;
+                return;
+            }
+            Event::Edge { .. } => {}
+            _ => return,
         }
+        self.edges = 0;
         let noted = self.plotter.take_noted();
         let settings = *self.plotter.settings();
         for anomaly in noted.anomalies {

@@ -2,9 +2,13 @@
 
 use super::machine::gate;
 use super::told::Told;
-use super::{Controller, EdgeSource, LinkedController, LinkedMachine, MachineController, RecordingTraits};
+use super::{
+    AnsweringBoard, Controller, EdgeSource, LinkedController, LinkedMachine, MachineController,
+    RecordingTraits,
+};
 use crate::log::{self, Header};
 use core::fmt;
+use core::time::Duration;
 use plotter_motion::control::ChosenController;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
 use plotter_motion::firmware::{Gantry, GantrySettings, LinkedGantry, MarkingBoard, StepperPlotter};
@@ -75,12 +79,34 @@ impl AnyController {
     ) -> Result<Box<dyn Controller>, ControllerError> {
         let header = traits.header(header);
         if traits.settings(&header, false).edges != EdgeSource::Messages {
-            return Self::for_header(&header, machine);
+            let mut controller = Self::for_header(&header, machine)?;
+            if header.text("protocol") == Some("grbl") && traits.is_greeted_before() {
+                // It was on before the log began, and has said its greeting.
+                while controller.transmit_at(Duration::ZERO).is_some() {}
+            }
+            return Ok(controller);
         }
         let machine = machine_of(&header, machine)?;
         let boot = LinkedMachine::of_header(&header).map_or(0, |linked| linked.boot);
         let gantry = Gantry::with_settings(GantrySettings::of(&machine), Told::default(), gate());
         Ok(Box::new(LinkedGantry::<4, 64, Told>::new(gantry, boot, LinkSettings::default())))
+    }
+
+    /// Which preset's controller a header means: the one that it names, or the one that speaks its protocol.
+    ///
+    /// ```
+    /// # use plotter_replay::{AnyController, log::Header};
+    /// let header = Header::new().with_text("protocol", "grbl");
+    /// assert_eq!(AnyController::named(&header), Some("stepper-plotter"));
+    /// assert_eq!(AnyController::named(&Header::new()), None); // the semi-virtual gantry as it is here
+    /// ```
+    #[must_use]
+    pub fn named(header: &Header) -> Option<&str> {
+        header.text("controller").or_else(|| match header.text("protocol") {
+            Some("grbl" | "mdraw") => Some("stepper-plotter"),
+            Some("counts") => Some("marking-board"),
+            _ => None,
+        })
     }
 
     /// A new controller for a log with this header; without a machine, for the preset that the header names.
@@ -94,6 +120,9 @@ impl AnyController {
     ) -> Result<Box<dyn Controller>, ControllerError> {
         let machine = machine_of(header, machine)?;
         Ok(match machine.kind() {
+            MachineKind::Belt if header.text("protocol") == Some("counts") => {
+                Box::new(AnsweringBoard::new(&machine))
+            }
             MachineKind::Belt => Box::new(MarkingBoard::<ChosenController>::of(&machine, gate())),
             MachineKind::Steppers => {
                 let dialect =
@@ -122,14 +151,19 @@ impl AnyController {
 /// The machine whose controller made a log: as described, or the preset that the header names. One that does
 /// not speak the log's protocol is refused.
 fn machine_of(header: &Header, machine: Option<&Machine>) -> Result<Machine, ControllerError> {
-    let machine = machine.map_or_else(|| preset(header.text("controller")), |machine| Ok(*machine))?;
+    let machine = machine.map_or_else(|| preset(AnyController::named(header)), |machine| Ok(*machine))?;
     let spoken_by = match header.text("protocol") {
         Some("digits") => Some((MachineKind::Gantry, "a log of the protocol \"digits\"")),
         Some("link") => Some((MachineKind::Gantry, "a log of the protocol \"link\"")),
         Some("counts") => Some((MachineKind::Belt, "a log of the protocol \"counts\"")),
         Some("grbl") => Some((MachineKind::Steppers, "a log of the protocol \"grbl\"")),
         Some("mdraw") => Some((MachineKind::Steppers, "a log of the protocol \"mdraw\"")),
-        _ => None,
+        None | Some("messages") => None,
+        Some(other) => {
+            return Err(ControllerError {
+                message: format!("its protocol is {other:?}, and no controller here speaks that"),
+            });
+        }
     };
     spoken_by.map_or(Ok(()), |(kind, log)| machine.require(kind, log)).map_err(error)?;
     Ok(machine)

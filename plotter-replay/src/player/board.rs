@@ -9,7 +9,7 @@ use plotter_motion::firmware::MarkingBoard;
 use plotter_motion::{Axis, Direction, Pen, PenMove, StepPoint};
 
 /// Steps of the PWM timer: 8 bits.
-const PWM_STEPS: u16 = 255;
+pub(super) const PWM_STEPS: u16 = 255;
 
 /// The board has no serial line: its moves are the `@ pen` and `@ target` records. Its encoders only count
 /// up, so that the direction of an `@ edge` record is for people.

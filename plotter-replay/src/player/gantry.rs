@@ -50,7 +50,7 @@ impl<C: LineController> Controller for Gantry<C> {
 }
 
 /// The limit switch of a name: `x-min`, `x-max`, `y-min`, `y-max`.
-pub(super) fn limit(name: &SwitchName) -> Option<(Axis, Direction)> {
+pub(crate) fn limit(name: &SwitchName) -> Option<(Axis, Direction)> {
     Some(match name.as_str() {
         "x-min" => (Axis::X, Direction::Minus),
         "x-max" => (Axis::X, Direction::Plus),

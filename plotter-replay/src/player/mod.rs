@@ -5,6 +5,7 @@
 //! a line of their own, ten bit times each ([`plotter_motion::protocol::Wire`]), and are stamped when the
 //! last bit is through, as a log stamps them.
 
+mod answering_board;
 mod any;
 mod board;
 mod controller;
@@ -23,8 +24,11 @@ mod traits;
 mod unframed;
 mod unlinked;
 
+pub use answering_board::AnsweringBoard;
 pub use any::{AnyController, ControllerError};
 pub use controller::Controller;
+#[cfg(feature = "live")]
+pub(crate) use gantry::limit;
 pub use inputs::Inputs;
 pub use linked::LinkedController;
 pub use linked_machine::LinkedMachine;
@@ -38,7 +42,11 @@ pub(crate) use unframed::SESSION;
 
 use crate::log::{Event, Header, Record};
 use core::time::Duration;
-use run::{Did, Run};
+use run::Did;
+#[cfg(feature = "live")]
+pub(crate) use run::Run;
+#[cfg(not(feature = "live"))]
+use run::Run;
 use std::collections::VecDeque;
 
 /// Records that a difference shows on each side of its place.
@@ -243,6 +251,10 @@ impl<C: Controller> Check<C> {
 
     /// The same for steps and the pen.
     fn compare_acts(&mut self, index: u64, now: Duration) -> Result<(), Box<Difference>> {
+        if self.run.has_no_acts() {
+            self.run.did.clear();
+            return Ok(());
+        }
         loop {
             match (self.acted.front().copied(), self.run.did.front().copied()) {
                 (Some((at, time, act)), Some((done, did))) => {
@@ -271,6 +283,7 @@ impl<C: Controller> Check<C> {
         let end = last.time;
         self.run
             .advance(end.saturating_add(self.tolerance))
+            .and_then(|()| self.run.end())
             .map_err(|stuck| self.stuck(index, end, stuck))?;
         self.compare(index, end)?;
         self.compare_acts(index, end)?;

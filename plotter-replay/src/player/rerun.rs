@@ -1,7 +1,7 @@
 //! [`Rerun`]: the recording that a controller gives on the inputs of another.
 
 use super::inputs::Inputs;
-use super::run::{Did, Run};
+use super::run::Run;
 use super::{Controller, PlayerSettings, Stuck};
 use crate::log::{Event, Record};
 use core::time::Duration;
@@ -27,7 +27,7 @@ impl<I: Iterator<Item = Record>, C: Controller> Rerun<I, C> {
 
     /// The controller, as it is now.
     pub fn controller(&self) -> &C {
-        &self.run.controller.inner
+        self.run.controller()
     }
 
     fn take(&mut self, record: Record) -> Result<(), Stuck> {
@@ -69,32 +69,15 @@ impl<I: Iterator<Item = Record>, C: Controller> Rerun<I, C> {
 
     /// Tells what was said and done until `to`, in the order of its times.
     fn tell(&mut self, to: Duration) {
-        loop {
-            let said = self.run.said.front().map(|&(time, _)| time).filter(|&time| time <= to);
-            let did = self.run.did.front().map(|&(time, _)| time).filter(|&time| time <= to);
-            if did.is_some_and(|did| said.is_none_or(|said| did <= said)) {
-                self.tell_act();
-                continue;
-            }
-            let Some((time, byte)) = said.and_then(|_| self.run.said.pop_front()) else { return };
-            self.ready.push_back(Record { time, event: Event::Controller(vec![byte]) });
+        while let Some(record) = self.run.next_told(to) {
+            self.ready.push_back(record);
         }
     }
 
     fn tell_acts(&mut self, to: Duration) {
-        while self.run.did.front().is_some_and(|&(time, _)| time <= to) {
-            self.tell_act();
+        while let Some(record) = self.run.next_act(to) {
+            self.ready.push_back(record);
         }
-    }
-
-    fn tell_act(&mut self) {
-        let Some((time, did)) = self.run.did.pop_front() else { return };
-        let event = match did {
-            Did::Step(axis, sign) => Event::Edge { axis, sign },
-            Did::Pen(pen) => Event::Pen(pen),
-            Did::Duty(axis, duty) => Event::Drive { axis, duty },
-        };
-        self.ready.push_back(Record { time, event });
     }
 }
 
@@ -118,6 +101,9 @@ impl<I: Iterator<Item = Record>, C: Controller> Iterator for Rerun<I, C> {
                 }
                 None => {
                     self.is_over = true;
+                    if let Err(stuck) = self.run.end() {
+                        return Some(Err(stuck));
+                    }
                     self.tell(Duration::MAX);
                 }
             }

@@ -21,6 +21,11 @@ const LONGEST_WAIT: Duration = Duration::from_secs(1);
 /// Silence between two records, or before the first, that is still run through tick by tick.
 const LONGEST_SILENCE: Duration = Duration::from_secs(3_600);
 
+/// A time as a log has it.
+fn whole_micros(time: Duration) -> Duration {
+    Duration::new(time.as_secs(), time.subsec_micros().saturating_mul(1_000))
+}
+
 /// Where the edges for a re-run come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum EdgeSource {
@@ -46,7 +51,7 @@ impl EdgeSource {
 
 /// What a controller does besides sending bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Did {
+pub(crate) enum Did {
     /// A motor made a step.
     Step(Axis, Direction),
     /// The pen was lifted or lowered.
@@ -57,7 +62,7 @@ pub(super) enum Did {
 
 /// A controller, the line that its bytes go over, and how far in time it is.
 #[derive(Debug)]
-pub(super) struct Run<C> {
+pub(crate) struct Run<C> {
     pub(super) controller: Unlinked<C>,
     edges: EdgeSource,
     wire: Wire,
@@ -84,7 +89,7 @@ pub(super) struct Run<C> {
 }
 
 impl<C: Controller> Run<C> {
-    pub(super) fn new(controller: C, baud: u32, edges: EdgeSource) -> Self {
+    pub(crate) fn new(controller: C, baud: u32, edges: EdgeSource) -> Self {
         let controller = match edges {
             EdgeSource::Messages => Unlinked::behind_a_link(controller),
             EdgeSource::Records | EdgeSource::Pulses => Unlinked::plain(controller),
@@ -108,17 +113,50 @@ impl<C: Controller> Run<C> {
     }
 
     /// The same, which also tells when a duty cycle changes.
-    pub(super) fn telling_duties(mut self) -> Self {
+    pub(crate) fn telling_duties(mut self) -> Self {
         self.tells_duties = true;
         self
     }
 
-    pub(super) fn now(&self) -> Duration {
+    pub(crate) fn now(&self) -> Duration {
         self.now
     }
 
+    pub(crate) fn controller(&self) -> &C {
+        &self.controller.inner
+    }
+
+    /// Lets time pass for a controller that is not run any further.
+    #[cfg(feature = "live")]
+    pub(crate) fn stand_until(&mut self, to: Duration) {
+        self.now = self.now.max(to);
+    }
+
+    /// The next of what was said and done until `to`, in the order of its times.
+    pub(crate) fn next_told(&mut self, to: Duration) -> Option<Record> {
+        let said = self.said.front().map(|&(time, _)| time).filter(|&time| time <= to);
+        let did = self.did.front().map(|&(time, _)| time).filter(|&time| time <= to);
+        if did.is_some_and(|did| said.is_none_or(|said| did <= said)) {
+            return self.next_act(to);
+        }
+        let (time, byte) = said.and_then(|_| self.said.pop_front())?;
+        Some(Record { time, event: Event::Controller(vec![byte]) })
+    }
+
+    /// The next of what was done until `to`.
+    pub(super) fn next_act(&mut self, to: Duration) -> Option<Record> {
+        let (time, did) = self.did.front().copied().filter(|&(time, _)| time <= to)?;
+        self.did.pop_front();
+        let event = match did {
+            Did::Step(axis, sign) => Event::Edge { axis, sign },
+            Did::Pen(pen) => Event::Pen(pen),
+            Did::Duty(axis, duty) => Event::Drive { axis, duty },
+        };
+        Some(Record { time, event })
+    }
+
     /// Runs every tick that is due up to the recorded time `to`, each at its own time.
-    pub(super) fn advance(&mut self, to: Duration) -> Result<(), Stuck> {
+    pub(crate) fn advance(&mut self, to: Duration) -> Result<(), Stuck> {
         self.run_to(to.saturating_add(self.late))
     }
 
@@ -194,8 +232,13 @@ impl<C: Controller> Run<C> {
         Ok(())
     }
 
+    /// Runs what is due within the microsecond of the last record: in the log it is of the same time.
+    pub(super) fn end(&mut self) -> Result<(), Stuck> {
+        self.run_to(whole_micros(self.now).saturating_add(Duration::from_nanos(999)))
+    }
+
     /// Hands the controller what the record says, if that is an input.
-    pub(super) fn feed(&mut self, record: &Record) -> Result<(), Stuck> {
+    pub(crate) fn feed(&mut self, record: &Record) -> Result<(), Stuck> {
         let now = self.now;
         match &record.event {
             Event::Controller(bytes) if self.edges == EdgeSource::Messages => {
@@ -234,6 +277,11 @@ impl<C: Controller> Run<C> {
         self.fetch()
     }
 
+    /// Whether the recording has no steps to compare with, though the controller makes some.
+    pub(super) fn has_no_acts(&self) -> bool {
+        self.edges == EdgeSource::Pulses && self.controller.makes_steps()
+    }
+
     fn takes_edges(&self) -> bool {
         self.edges != EdgeSource::Pulses && !self.controller.makes_steps()
     }
@@ -246,7 +294,8 @@ impl<C: Controller> Run<C> {
     }
 
     fn fetch(&mut self) -> Result<(), Stuck> {
-        let at = self.now.saturating_sub(self.late);
+        // In whole microseconds, as a log has it.
+        let at = whole_micros(self.now.saturating_sub(self.late));
         let mut fetched = 0;
         // A step may give an answer, and an answer that is sent room for what gives a step.
         loop {

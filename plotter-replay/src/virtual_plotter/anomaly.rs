@@ -95,6 +95,38 @@ pub enum AnomalyKind {
         /// The target.
         target: StepPoint,
     },
+    /// The machine has refused a line.
+    LineRefused {
+        /// The line.
+        line: String,
+        /// The number of its error; 0 where it has none.
+        code: u16,
+    },
+    /// The machine has taken a line that says nothing known here: what it draws is missing.
+    LineNotUnderstood {
+        /// The line.
+        line: String,
+    },
+    /// The machine says to be elsewhere than its lines lead.
+    ReportedElsewhere {
+        /// Where it says to be, minus where it should be.
+        off: StepPoint,
+    },
+    /// The machine has raised an alarm.
+    Alarm {
+        /// Its number.
+        number: u16,
+    },
+    /// The log ends before lines were answered: they are not drawn.
+    Unanswered {
+        /// How many.
+        lines: u64,
+    },
+    /// The machine was on its way when it was heard last: what comes after that is not drawn.
+    NotKnownDrawn {
+        /// How many moves.
+        moves: u64,
+    },
     /// The path is longer than what is kept; from here on only positions are counted.
     PathTooLong,
 }
@@ -155,6 +187,20 @@ impl fmt::Display for AnomalyKind {
             Self::NotInDrawing { target } => {
                 write!(f, "target ({}, {}) is not in the drawing: its way is drawn", target.x, target.y)
             }
+            Self::LineRefused { line, code: 0 } => write!(f, "line {line:?} was refused"),
+            Self::LineRefused { line, code } => write!(f, "line {line:?} was refused: error {code}"),
+            Self::LineNotUnderstood { line } => {
+                write!(f, "line {line:?} was taken and is not understood here: what it draws is missing")
+            }
+            Self::ReportedElsewhere { off } => {
+                write!(f, "the machine says to be ({}, {}) steps beside where its lines lead", off.x, off.y)
+            }
+            Self::Alarm { number } => write!(f, "the machine raised alarm {number}"),
+            Self::Unanswered { lines } => write!(f, "{lines} line(s) without an answer: not drawn"),
+            Self::NotKnownDrawn { moves } => write!(
+                f,
+                "{moves} move(s) were taken, and the machine was on its way to them when it was heard last: not drawn"
+            ),
             Self::PathTooLong => {
                 write!(f, "the path is too long to keep: from here only positions are counted")
             }

@@ -26,6 +26,8 @@ impl TrackPoint {
 pub struct Leg {
     /// Whether it is drawn.
     pub pen: Pen,
+    /// With which pen, as lines of text select one; 0 where nothing says.
+    pub pen_number: u8,
     /// The target before: where the line that this way should follow begins, encoder counts.
     pub from: StepPoint,
     /// The target, encoder counts; `None` if none was sent.

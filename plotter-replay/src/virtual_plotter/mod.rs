@@ -12,6 +12,9 @@
 //! The reliable link says the same in frames; there the pen is known, and nothing is lost that one side has
 //! not noticed.
 //!
+//! Grbl's and mDraw's lines are text: they are drawn as what they say, as far as the machine has taken them and
+//! says to be.
+//!
 //! Two tracks are kept: *as counted*, and *resynchronized*, which starts afresh at each reached target. A
 //! lost pulse shifts the first for ever and the second until the next `+`.
 
@@ -19,12 +22,14 @@ mod anomaly;
 mod drawing;
 mod host_digits;
 mod leg;
+mod lines;
 mod linked;
 mod noted;
 mod settings;
 
 pub use anomaly::{Anomaly, AnomalyKind};
 pub use leg::{Leg, TrackPoint};
+pub use lines::LineCounts;
 pub use noted::Noted;
 pub use settings::{CountedBy, PlotterSettings, SettingsError};
 
@@ -32,6 +37,7 @@ use crate::log::{Event, Record};
 use core::time::Duration;
 use drawing::Drawing;
 use host_digits::{Decoded, HostDigits};
+use lines::{Lines, Tongue};
 use linked::{Linked, Speech};
 use plotter_motion::protocol::Order;
 use plotter_motion::protocol::digits::Reply;
@@ -69,9 +75,12 @@ pub struct VirtualPlotter {
     settings: PlotterSettings,
     host: HostDigits,
     linked: Linked,
+    /// Of a session of text lines.
+    lines: Option<Lines>,
     drawing: Option<Drawing>,
     pen: Pen,
     pen_recorded: bool,
+    pen_number: u8,
     counted: StepPoint,
     correction: StepPoint,
     // Where the present line begins.
@@ -96,8 +105,15 @@ impl VirtualPlotter {
     /// A plotter at position (0, 0) that draws every way, unless the log records the pen.
     #[must_use]
     pub fn new(settings: PlotterSettings) -> Self {
-        let origin = StepPoint::default();
-        let pen = Pen::Down;
+        let origin = settings.begins_at.map_or(StepPoint::default(), |at| settings.to_counts(at));
+        let lines = |tongue| Lines::new(tongue, settings.pen, settings.begins_at);
+        let lines = match settings.counted_by {
+            CountedBy::Grbl => Some(lines(Tongue::Grbl)),
+            CountedBy::MDraw => Some(lines(Tongue::MDraw)),
+            CountedBy::Answers | CountedBy::Edges | CountedBy::Link => None,
+        };
+        // Lines say where the pen is lifted.
+        let pen = if lines.is_some() { Pen::Up } else { Pen::Down };
         Self {
             settings,
             host: HostDigits::new(settings.resync_gap),
@@ -106,17 +122,19 @@ impl VirtualPlotter {
             } else {
                 Speech::Digits
             }),
+            lines,
             drawing: None,
             pen,
             pen_recorded: false,
+            pen_number: 0,
             counted: origin,
-            correction: origin,
+            correction: StepPoint::default(),
             from: origin,
             next: None,
             under_way: 0,
             last_byte: None,
             now: Duration::ZERO,
-            leg: new_leg(pen, origin, origin, origin, 0),
+            leg: new_leg(pen, origin, origin, StepPoint::default(), 0),
             legs: Vec::new(),
             points: 0,
             full: false,
@@ -167,6 +185,10 @@ impl VirtualPlotter {
                 self.listen();
                 self.count(*axis, *sign);
             }
+            Event::Edge { axis, sign } if self.lines.is_some() => {
+                self.count(*axis, *sign);
+                self.line_step();
+            }
             // Edges come again as pulse bytes; the others do not move the pen.
             Event::Edge { .. }
             | Event::Drive { .. }
@@ -178,6 +200,7 @@ impl VirtualPlotter {
 
     /// The log is over: takes what is left of it.
     pub fn finish(&mut self) {
+        self.finish_lines();
         let decoded = self.host.finish();
         self.take(decoded);
         let digits = self.host.partial();
@@ -339,6 +362,10 @@ impl VirtualPlotter {
     }
 
     fn host_byte(&mut self, byte: u8) {
+        if self.lines.is_some() {
+            self.host_line_byte(byte);
+            return;
+        }
         self.listen();
         // (an order is no digit: it belongs to no target)
         if self.host_link_byte(byte) || Order::from_byte(byte).is_some() {
@@ -349,6 +376,10 @@ impl VirtualPlotter {
     }
 
     fn controller_byte(&mut self, byte: u8) {
+        if self.lines.is_some() {
+            self.controller_line_byte(byte);
+            return;
+        }
         self.listen();
         if self.controller_link_byte(byte) {
             return;
@@ -480,6 +511,19 @@ impl VirtualPlotter {
         self.leg.pen = pen;
     }
 
+    fn set_pen_number(&mut self, number: u8) {
+        if number == self.pen_number {
+            return;
+        }
+        self.pen_number = number;
+        if self.leg.points.len() > 1 {
+            let target = self.leg.target;
+            self.end_leg(None);
+            self.leg.target = target;
+        }
+        self.leg.pen_number = number;
+    }
+
     fn add_point(&mut self) {
         if self.full {
             return;
@@ -501,6 +545,7 @@ impl VirtualPlotter {
     fn begin_leg(&self) -> Leg {
         let mut leg = new_leg(self.pen, self.from, self.counted, self.correction, self.here().time_us);
         leg.target = self.next;
+        leg.pen_number = self.pen_number;
         leg
     }
 
@@ -529,7 +574,15 @@ impl VirtualPlotter {
 }
 
 fn new_leg(pen: Pen, from: StepPoint, at: StepPoint, correction: StepPoint, time_us: u64) -> Leg {
-    Leg { pen, from, target: None, points: vec![TrackPoint { time_us, at }], correction, reached: None }
+    Leg {
+        pen,
+        pen_number: 0,
+        from,
+        target: None,
+        points: vec![TrackPoint { time_us, at }],
+        correction,
+        reached: None,
+    }
 }
 
 fn plus(a: StepPoint, b: StepPoint) -> StepPoint {

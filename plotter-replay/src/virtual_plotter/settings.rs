@@ -3,6 +3,7 @@
 use crate::log::Header;
 use core::fmt;
 use core::time::Duration;
+use plotter_motion::gcode::PenConvention;
 use plotter_motion::kinematics::{BeltSigns, MotorPoint};
 use plotter_motion::{Point, StepPoint};
 
@@ -20,6 +21,11 @@ pub struct PlotterSettings {
     pub belt: Option<BeltSigns>,
     /// What says where the motors are.
     pub counted_by: CountedBy,
+    /// Where the pen is when the log begins, mm; `None` for the origin of the counts, or where the machine
+    /// first says to be.
+    pub begins_at: Option<Point>,
+    /// By which words lines of Grbl's language lift the pen.
+    pub pen: PenConvention,
     /// A silence of the host inside a target after which the rest of it is not expected any more.
     pub resync_gap: Duration,
     /// A silence with a target under way that is reported.
@@ -47,6 +53,11 @@ pub enum CountedBy {
     /// protocol `link`. A log of [`Answers`](Self::Answers) in which a machine greets a host becomes one of
     /// these.
     Link,
+    /// Lines of Grbl's language, once they are answered, and what the machine reports of its place; or its
+    /// steps, where the log has them: the protocol `grbl`.
+    Grbl,
+    /// The same of mDraw's language: the protocol `mdraw`.
+    MDraw,
 }
 
 impl Default for PlotterSettings {
@@ -59,6 +70,8 @@ impl Default for PlotterSettings {
             p1: Point::ORIGIN,
             belt: None,
             counted_by: CountedBy::Answers,
+            begins_at: None,
+            pen: PenConvention::Spindle,
             resync_gap: Duration::from_millis(100),
             stall_after: Duration::from_secs(1),
             reached_tolerance_counts: 0,
@@ -67,6 +80,9 @@ impl Default for PlotterSettings {
         }
     }
 }
+
+/// A step of a stepper plotter whose log does not say how long it is, mm: that of the documented machine.
+const STEP_MM: f64 = 1.0 / 87.58;
 
 /// A number in a log's header that makes no sense.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,14 +125,23 @@ impl PlotterSettings {
         let counted_by = match header.text("protocol") {
             Some("counts") => CountedBy::Edges,
             Some("link") => CountedBy::Link,
-            _ => CountedBy::Answers,
+            Some("grbl") => CountedBy::Grbl,
+            Some("mdraw") => CountedBy::MDraw,
+            Some("digits" | "messages") => CountedBy::Answers,
+            None if !header.has("protocol") => CountedBy::Answers,
+            _ => {
+                let expected = "digits, link, counts, grbl or mdraw: what another one says is not known here";
+                return Err(SettingsError { key: "protocol", expected });
+            }
         };
+        let is_lines = matches!(counted_by, CountedBy::Grbl | CountedBy::MDraw);
+        let scale_mm = |mm: f64| if is_lines { STEP_MM } else { mm };
         let tolerance = f64::from(base.reached_tolerance_counts);
         let tolerance = number("reached_tolerance_counts", "0 to 100000 counts", counts, tolerance)?;
         let scale = "a length above 0 and up to 1000 mm";
         Ok(Self {
-            x_mm_per_pulse: number("x_mm_per_pulse", scale, length, base.x_mm_per_pulse)?,
-            y_mm_per_pulse: number("y_mm_per_pulse", scale, length, base.y_mm_per_pulse)?,
+            x_mm_per_pulse: number("x_mm_per_pulse", scale, length, scale_mm(base.x_mm_per_pulse))?,
+            y_mm_per_pulse: number("y_mm_per_pulse", scale, length, scale_mm(base.y_mm_per_pulse))?,
             p1: Point::new(
                 number("p1_x_mm", "a number within 1e6 mm", place, base.p1.x)?,
                 number("p1_y_mm", "a number within 1e6 mm", place, base.p1.y)?,

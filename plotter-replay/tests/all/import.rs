@@ -189,6 +189,21 @@ fn sigrok_with_bits_and_errors_among_the_bytes() {
 }
 
 #[test]
+fn one_file_of_sigrok_with_both_directions() {
+    // Two decoders: who speaks first is the host. One with two lines: its rows say who.
+    let two = "109-189 uart-1: 02\n209-289 uart-1: 00\n4095-4175 uart-2: 31\n5000-5080 uart-1: 05\n";
+    let rows = "109-189 uart-1: tx-data: 02\n209-289 uart-1: tx-data: 00\n4095-4175 uart-1: rx-data: 31\n\
+        5000-5080 uart-1: tx-data: 05\n";
+    for text in [two, rows] {
+        let came =
+            run(vec![source("both.txt", Tool::Sigrok, None, text.as_bytes())], &ImportSettings::default());
+        let came = came.unwrap();
+        assert_eq!(shown(&came.records), ["78 > 02", "117 > 00", "1635 < 31", "1988 > 05"]);
+        assert_eq!(came.troubles, Vec::<String>::new());
+    }
+}
+
+#[test]
 fn bare_bytes_have_the_times_of_the_line() {
     let bytes = [b'1'; 100];
     let came = run(vec![source("dump", Tool::Raw, None, &bytes)], &ImportSettings::default()).unwrap();

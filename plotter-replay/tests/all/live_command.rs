@@ -65,11 +65,15 @@ fn what_cannot_be_driven_is_said_in_a_line_with_status_2() {
         assert_eq!(status, Some(2), "{arguments:?}: {out}{err}");
         assert!(err.contains(words), "{arguments:?}: {err}");
     }
-    for machine in ["belt.toml", "stepper.toml"] {
-        let (status, out, err) = run(&["simulate", machine], here);
+    for (machine, dialect, words) in [
+        ("belt.toml", "link", "this machine has DC motors on one belt"),
+        ("belt.toml", "grbl", "this machine has DC motors on one belt"),
+        ("stepper.toml", "digits", "this machine has stepper motors"),
+        ("machine.toml", "mdraw", "this machine has DC motors that each move an axis"),
+    ] {
+        let (status, out, err) = run(&["simulate", machine, "--dialect", dialect], here);
         assert_eq!(status, Some(2), "{machine}: {out}{err}");
-        let place = format!("plotter-replay: {machine}: this machine has ");
-        assert!(err.starts_with(&place) && err.contains("simulate needs DC motors"), "{err}");
+        assert!(err.starts_with(&format!("plotter-replay: {machine}: ")) && err.contains(words), "{err}");
     }
 }
 

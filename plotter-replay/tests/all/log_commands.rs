@@ -357,3 +357,113 @@ fn memory_does_not_grow_with_the_log() {
     println!("two logs of which one is twenty times as long: {unlike} KiB");
     assert!(unlike < 32_768);
 }
+
+/// A log of this protocol, with what was said.
+fn lines_log(here: &Path, protocol: &str, said: &[(u64, bool, &str)]) {
+    let header = Header::new().with_number("baud", 115_200).with_text("protocol", protocol);
+    let mut writer = log::create(&here.join("lines.plog"), &header).unwrap();
+    for &(time_us, is_host, text) in said {
+        let bytes = text.as_bytes().to_vec();
+        let event = if is_host { Event::Host(bytes) } else { Event::Controller(bytes) };
+        writer.write(&Record::at_us(time_us, event)).unwrap();
+    }
+    writer.finish().unwrap();
+}
+
+#[test]
+fn a_session_of_grbl_is_known_drawn_and_its_controller_named() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let said = [
+        (0, true, "?"),
+        (900, false, "<Idle|MPos:30.000,20.000,0.000|Bf:15,128|FS:0,0|WCO:0.000,0.000,0.000>\r\n"),
+        (2_000_000, true, "G21\nM6 T2\nM3\nG1 X40 F600\n"),
+        (2_002_000, false, "ok\r\nok\r\nok\r\nok\r\n"),
+        (4_000_000, true, "?"),
+        (4_000_900, false, "<Idle|MPos:40.000,20.000,0.000|Bf:15,128|FS:0,0>\r\n"),
+    ];
+    lines_log(here, "grbl", &said);
+    let info = run(&["info", "lines.plog"], here);
+    assert_eq!(info.status, 0, "{}{}", info.out, info.err);
+    for words in [
+        "lines: 4 sent, 4 taken by the machine, 0 refused",
+        "place: told by the machine up to 4.000900 s",
+        "ends at (39.998, 20.005) mm", // to the nearest step
+        "anomalies: 0",
+    ] {
+        assert!(info.out.contains(words), "{words}: {}", info.out);
+    }
+    let render = run(&["render", "lines.plog", "-o", "out"], here);
+    assert_eq!(render.status, 0, "{}{}", render.out, render.err);
+    let svg = std::fs::read_to_string(here.join("out/plotted.svg")).unwrap();
+    assert!(svg.contains("pen 2") && svg.contains("#1a7f37"), "{svg}");
+    let check = run(&["check", "lines.plog"], here);
+    let words = "controller: stepper-plotter (the preset for this protocol), grbl";
+    assert!(check.out.contains(words), "{}", check.out);
+    assert!(check.out.contains("the controller makes its own, which are not compared"), "{}", check.out);
+    let text = run(&["export", "lines.plog", "--to", "text"], here);
+    assert!(text.out.contains("\"G21\", \"M6 T2\", \"M3\", \"G1 X40 F600\""), "{}", text.out);
+    assert!(text.out.contains("question"), "{}", text.out);
+}
+
+#[test]
+fn an_unknown_protocol_is_said_and_taken_for_no_other() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    lines_log(here, "marlin", &[(0, true, "G28\n"), (900, false, "ok\n")]);
+    for command in ["info", "render", "check", "replay"] {
+        let ran = run(&[command, "lines.plog"], here);
+        assert_eq!(ran.status, 2, "{command}: {}", ran.out);
+        assert!(ran.err.contains("protocol") && !ran.out.contains("anomalies"), "{command}: {}", ran.err);
+    }
+    // What it holds can be read all the same.
+    assert!(run(&["info", "lines.plog"], here).out.contains("2 records, nothing lost"));
+    let text = run(&["export", "lines.plog", "--to", "text"], here);
+    assert_eq!(text.status, 0, "{}", text.err);
+    assert!(text.out.contains("\"G28\\n\""), "{}", text.out);
+}
+
+#[test]
+fn a_log_of_digits_that_begins_away_from_the_origin_begins_there() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    // At (700, 400) the first target is reached at once; the next is 3 to the right.
+    let records = [
+        host(0, &[0, 0, 7, 0, 0, 0, 0, 4, 0, 0]),
+        said(900, b"+"),
+        host(2_000, &[3, 0, 7, 0, 0, 0, 0, 4, 0, 0]),
+        said(9_000, b"111+"),
+    ];
+    write(&here.join("away.plog"), &records);
+    let info = run(&["info", "away.plog"], here);
+    assert_eq!(info.status, 0, "{}", info.err);
+    let words = "begins at (17.500, 10.000) mm: the first target that is reached tells";
+    assert!(info.out.contains(words) && info.out.contains("anomalies: 0"), "{}", info.out);
+    assert!(info.out.contains("ends at (17.575, 10.000) mm, counted (703, 400)"), "{}", info.out);
+    // Who knows better says so.
+    let info = run(&["info", "away.plog", "--origin", "0,0"], here);
+    assert!(info.out.contains("as is said") && !info.out.contains("anomalies: 0"), "{}", info.out);
+    assert_eq!(run(&["info", "away.plog", "--origin", "0"], here).status, 2);
+}
+
+#[test]
+fn an_import_that_fails_leaves_no_log_and_the_old_one_as_it_was() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    std::fs::write(here.join("old.plog"), "precious").unwrap();
+    // Half of them could be digits of a host: nobody knows whose bytes they are.
+    std::fs::write(here.join("capture.txt"), "109-189 uart-1: 02\n209-289 uart-1: 41\n").unwrap();
+    let files = || {
+        let mut names: Vec<_> =
+            std::fs::read_dir(here).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    let before = files();
+    for out in ["new.plog", "old.plog"] {
+        let ran = run(&["import", "capture.txt", "-o", out, "--force"], here);
+        assert_eq!(ran.status, 2, "{}{}", ran.out, ran.err);
+        assert_eq!(files(), before);
+    }
+    assert_eq!(std::fs::read_to_string(here.join("old.plog")).unwrap(), "precious");
+}

@@ -17,9 +17,12 @@ mod damaged_logs;
 #[cfg(all(feature = "cli", feature = "live"))]
 mod devtools;
 mod golden_presets;
+#[cfg(feature = "live")]
+mod golden_simulated;
 mod house;
 mod import;
 mod line;
+mod lines_in_logs;
 mod linked_session;
 #[cfg(all(feature = "cli", feature = "live"))]
 mod live_command;
@@ -38,4 +41,6 @@ mod replay_of_the_gantry;
 mod replay_of_the_link;
 mod sim_drawings_over_lines;
 mod sim_link;
+#[cfg(all(feature = "cli", feature = "live", unix))]
+mod simulate;
 mod virtual_plotter;

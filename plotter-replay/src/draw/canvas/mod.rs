@@ -27,6 +27,8 @@ pub enum Layer {
     Travel,
     /// What the motors drew: ink.
     Ink,
+    /// The same with another pen than the first, by its number from 2 to 8.
+    Pen(u8),
     /// The same, counted afresh from each reached target; only where that differs.
     Resynced,
     /// Ink that is not where it was meant to be.
@@ -36,15 +38,36 @@ pub enum Layer {
 }
 
 impl Layer {
-    const ALL: [Self; 6] =
-        [Self::Desired, Self::Travel, Self::Ink, Self::Resynced, Self::Differs, Self::Undrawn];
+    const ALL: [Self; 13] = [
+        Self::Desired,
+        Self::Travel,
+        Self::Ink,
+        Self::Pen(2),
+        Self::Pen(3),
+        Self::Pen(4),
+        Self::Pen(5),
+        Self::Pen(6),
+        Self::Pen(7),
+        Self::Pen(8),
+        Self::Resynced,
+        Self::Differs,
+        Self::Undrawn,
+    ];
+
+    /// The ink of a pen; beyond the eighth they have the colours of the second to the eighth again.
+    #[must_use]
+    pub const fn of_pen(number: u8) -> Self {
+        if number < 2 { Self::Ink } else { Self::Pen((number - 2) % 7 + 2) }
+    }
 
     /// The layers in the order in which they are drawn.
     fn shown(style: &CanvasStyle) -> impl DoubleEndedIterator<Item = Self> + use<> {
         let mut order = Self::ALL;
         if style.desired == DesiredLine::Over {
             order.rotate_left(1);
-            order.swap(4, 5);
+            // What was not drawn stays on top.
+            let last = order.len().saturating_sub(1);
+            order.swap(last.saturating_sub(1), last);
         }
         let travel = style.travel == Visibility::Shown;
         order.into_iter().filter(move |&layer| travel || layer != Self::Travel)
@@ -55,6 +78,15 @@ impl Layer {
             Self::Desired => "desired",
             Self::Travel => "pen up",
             Self::Ink => "drawn",
+            Self::Pen(number) => match number {
+                2 => "pen 2",
+                3 => "pen 3",
+                4 => "pen 4",
+                5 => "pen 5",
+                6 => "pen 6",
+                7 => "pen 7",
+                _ => "pen 8",
+            },
             Self::Resynced => "resynchronized",
             Self::Differs => "differs",
             Self::Undrawn => "not drawn",
@@ -72,6 +104,15 @@ impl Layer {
             Self::Desired => [0x9c, 0xc4, 0xec],
             Self::Travel => [0x9a, 0xa8, 0x9a],
             Self::Ink => [0x1a, 0x1a, 0x2e],
+            Self::Pen(number) => match number {
+                2 => [0x1a, 0x7f, 0x37],
+                3 => [0x82, 0x50, 0xdf],
+                4 => [0x0f, 0x7b, 0x8a],
+                5 => [0xb3, 0x18, 0x7a],
+                6 => [0x7a, 0x5c, 0x1e],
+                7 => [0x5a, 0x6b, 0x00],
+                _ => [0x3c, 0x5a, 0x99],
+            },
             Self::Resynced => [0xd9, 0x5f, 0x02],
             Self::Differs => [0xd1, 0x24, 0x2f],
             Self::Undrawn => [0xd9, 0x77, 0x06],

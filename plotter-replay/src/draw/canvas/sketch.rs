@@ -64,6 +64,13 @@ impl Sketch {
             leg.target.map(|target| Segment::new(settings.to_sheet(leg.from), settings.to_sheet(target)));
         match leg.pen {
             Pen::Down => {
+                let layer = Layer::of_pen(leg.pen_number);
+                if self.ink.layer != layer {
+                    let before = core::mem::replace(&mut self.ink, Joined::new(layer));
+                    self.canvas
+                        .lines
+                        .extend((!before.line.is_empty()).then_some((before.layer, before.line)));
+                }
                 self.ink.add(&mut self.canvas, thin(way(), self.tolerance_mm));
                 // The pieces of a way that was cut have one line.
                 if let Some(line) = line.filter(|line| !self.desired.ends_with(*line)) {

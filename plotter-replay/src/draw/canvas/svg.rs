@@ -85,7 +85,7 @@ impl Canvas {
 pub(super) fn line_width(layer: Layer, style: &CanvasStyle) -> f64 {
     let width = match layer {
         Layer::Desired => style.desired_width_mm,
-        Layer::Ink | Layer::Differs => style.ink_width_mm,
+        Layer::Ink | Layer::Pen(_) | Layer::Differs => style.ink_width_mm,
         Layer::Travel | Layer::Resynced | Layer::Undrawn => style.ink_width_mm / 2.0,
     };
     if width.is_finite() { width.clamp(1e-3, 1e3) } else { 0.3 }

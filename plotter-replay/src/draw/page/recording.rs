@@ -6,10 +6,11 @@ use super::few::Few;
 use super::ink_map::InkMap;
 use super::numbers::packed;
 use super::silence::Silences;
-use super::trail::{DIFFERS, DRAWN, Trail, TrailPoint};
+use super::trail::{DIFFERS, DRAWN, Trail, TrailPoint, pen_bits};
 use super::{along, document, signed, spread, steps};
 use crate::log::{Damage, Event, Header, Record, Summary};
-use crate::{PlotterSettings, VirtualPlotter, virtual_plotter::Leg};
+use crate::virtual_plotter::CountedBy;
+use crate::{PlotterSettings, VirtualPlotter, date, virtual_plotter::Leg};
 use core::time::Duration;
 use plotter_motion::{Pen, PlotOp, Point, Segment, StepPoint, toolpath::chords};
 use serde_json::{Value, json};
@@ -177,14 +178,17 @@ impl RecordingPage {
             Event::Host(_) => self.silences.byte(record.time),
             Event::Controller(bytes) => {
                 self.silences.byte(record.time);
-                let pulses =
-                    bytes.iter().filter(|byte| matches!(byte, b'1'..=b'4' | b'a'..=b'd')).count() as u64;
-                if pulses > 0 {
-                    self.pulses = self.pulses.saturating_add(pulses);
-                    self.curves.pulses.push(micros(record.time), pulses);
+                if self.counts_answers() {
+                    let pulses =
+                        bytes.iter().filter(|byte| matches!(byte, b'1'..=b'4' | b'a'..=b'd')).count() as u64;
+                    self.counted(record.time, pulses);
+                } else {
+                    // A line of text may end a move.
+                    self.pending = self.pending.saturating_add(1);
                 }
-                self.pending = self.pending.saturating_add(pulses);
             }
+            // Edges come again as answers, but where a machine gives none.
+            Event::Edge { .. } if !self.counts_answers() => self.counted(record.time, 1),
             Event::Edge { .. } | Event::Drive { .. } => return,
             _ => {}
         }
@@ -192,6 +196,19 @@ impl RecordingPage {
         if self.pending >= TAKE_OVER_AFTER {
             self.take_over();
         }
+    }
+
+    /// Whether where the motors are is told by the controller's answers.
+    fn counts_answers(&self) -> bool {
+        matches!(self.plotter.settings().counted_by, CountedBy::Answers | CountedBy::Link)
+    }
+
+    fn counted(&mut self, time: Duration, pulses: u64) {
+        if pulses > 0 {
+            self.pulses = self.pulses.saturating_add(pulses);
+            self.curves.pulses.push(micros(time), pulses);
+        }
+        self.pending = self.pending.saturating_add(pulses);
     }
 
     /// Takes a damaged line of the log.
@@ -233,7 +250,7 @@ impl RecordingPage {
         if let (Some(line), true, false) = (line, is_drawn, self.has_drawing) {
             self.meant.line(line.from, line.to);
         }
-        let pen = if is_drawn { DRAWN } else { 0 };
+        let pen = if is_drawn { DRAWN | pen_bits(leg.pen_number) } else { 0 };
         for (point, time_us) in leg.points.iter().zip(spread(&leg.points)) {
             let at = settings.to_sheet(point.at);
             let [x, y] = &mut self.curves.actual;
@@ -275,6 +292,7 @@ impl RecordingPage {
         let mut undrawn = Desired::new(self.settings.tolerance_mm, MOST_UNDRAWN_POINTS);
         self.plotter.undrawn().for_each(|(from, to)| undrawn.line(from, to));
         let facts = self.facts(header, summary);
+        let stands_in_gaps = self.counts_answers();
         let settings = *self.plotter.settings();
         let (way, way_error_mm) = packed_way(self.way);
         let (meant, meant_error_mm) = self.meant.finish();
@@ -333,6 +351,8 @@ impl RecordingPage {
                 ]},
             ],
             "gaps": gaps,
+            // A machine that tells each step stands while the line is silent; one of lines draws on.
+            "stands_in_gaps": stands_in_gaps,
             "gap_count": gap_count,
             "gap_after_ms": u64::try_from(self.settings.gap_after.as_millis()).unwrap_or(u64::MAX),
             "anomalies": self.anomalies,
@@ -365,6 +385,12 @@ impl RecordingPage {
         let shortened = |text: String| text.chars().take(MOST_FACT_CHARS).collect::<String>();
         let entries = header.entries().filter(|(key, _)| !key.ends_with("_mm_per_pulse"));
         for (key, value) in entries.take(MOST_FACTS) {
+            if let Some(words) =
+                (key == "began_unix_us").then(|| date::of_unix_us(header.number(key)?)).flatten()
+            {
+                facts.push((String::from("began"), words));
+                continue;
+            }
             facts.push((shortened(key.replace('_', " ")), shortened(value.trim_matches('"').to_owned())));
         }
         facts

@@ -16,6 +16,11 @@ pub(crate) const DRAWN: u8 = 1;
 /// The pen was farther from its line than is let pass.
 pub(crate) const DIFFERS: u8 = 2;
 
+/// Which pen it was: bits of the state above those two.
+pub(crate) const fn pen_bits(number: u8) -> u8 {
+    (if number < 2 { 0 } else { (number - 2) % 7 + 1 }) << 2
+}
+
 /// Keeps as few points of a way as give the place of the pen at every time within a tolerance, and never more
 /// than a given number: when there would be more, the tolerance is doubled and what is kept goes through it
 /// again.

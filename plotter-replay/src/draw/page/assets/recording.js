@@ -42,9 +42,18 @@ function before(times, time) { // how many of sorted times are not after `time`
   while (low < high) { const middle = (low + high) >> 1; if (times[middle] <= time) low = middle + 1; else high = middle; }
   return low;
 }
-function curve({ from_us, width_us, unit, low, high }) { // the middle of each stretch, least and greatest
+const gaps = data.gaps.map(([start, length]) => [start * 1e-6, (start + length) * 1e-6]).sort((a, b) => a[0] - b[0]);
+function curve({ from_us, width_us, unit, low, high }, stands) { // the middle of each stretch, least and greatest
   const points = [];
-  low.forEach((value, n) => { if (value !== null) points.push([(from_us + (n + 0.5) * width_us) * 1e-6, value * unit, high[n] * unit]); });
+  let gap = 0;
+  low.forEach((value, n) => {
+    if (value === null) return;
+    const time = (from_us + (n + 0.5) * width_us) * 1e-6, before = points.at(-1);
+    while (gap < gaps.length && gaps[gap][1] <= (before ? before[0] : 0)) gap++;
+    // What stands while the line is silent is drawn as standing, not on its way to where it is next.
+    if (stands && before && gap < gaps.length && gaps[gap][1] < time) points.push([gaps[gap][1], before[1], before[2]]);
+    points.push([time, value * unit, high[n] * unit]);
+  });
   return points;
 }
 function at({ from_us, width_us, unit, low, high }, time) { // the greatest value in the stretch of a time
@@ -78,6 +87,9 @@ function paintMap({ context, X, Y }) {
   context.drawImage(map.canvas, X(x_mm), Y(y_mm + high * side_mm), X(x_mm + wide * side_mm) - X(x_mm), Y(y_mm) - Y(y_mm + high * side_mm));
 }
 
+const data_stands = data.stands_in_gaps;
+const penColour = (state) => colour(state >> 2 & 7 ? "pen" + (state >> 2 & 7) : "ink");
+const pens = [...new Set(Array.from(way.s, (state) => state >> 2 & 7))].sort();
 let now = first, playing = null, painted = 0, layer = null;
 
 const sheet = new Sheet($("sheet"), (canvas) => {
@@ -98,13 +110,13 @@ const sheet = new Sheet($("sheet"), (canvas) => {
   const inked = { context: ink, X: canvas.X, Y: canvas.Y, ratio };
   strokes(way, painted, done, inked, [
     [DRAWN, 0, colour("travel"), ratio, [2 * ratio, 5 * ratio]],
-    [DRAWN | DIFFERS, DRAWN, colour("ink"), thick], [DRAWN | DIFFERS, DRAWN | DIFFERS, colour("differs"), thick],
+    ...pens.map((pen) => [DRAWN | DIFFERS | 28, DRAWN | pen << 2, penColour(pen << 2), thick]), [DRAWN | DIFFERS, DRAWN | DIFFERS, colour("differs"), thick],
   ]);
   painted = done;
   context.drawImage(layer, 0, 0);
   const [x, y] = place(now);
   if (done > 0 && done < way.length && way.s[done] & DRAWN) {
-    context.strokeStyle = colour(way.s[done] & DIFFERS ? "differs" : "ink"); context.lineWidth = thick;
+    context.strokeStyle = way.s[done] & DIFFERS ? colour("differs") : penColour(way.s[done]); context.lineWidth = thick;
     context.beginPath(); context.moveTo(canvas.X(way.x[done - 1]), canvas.Y(way.y[done - 1])); context.lineTo(canvas.X(x), canvas.Y(y)); context.stroke();
   }
   finishSheet(canvas);
@@ -122,7 +134,11 @@ function place(time) { // of the pen: x, y, whether it is down, mm/s
   const n = before(way.t, time);
   if (n === 0) return [way.x[0] || 0, way.y[0] || 0, false, 0, 0];
   if (n === way.length) return [way.x[n - 1], way.y[n - 1], (way.s[n - 1] & DRAWN) !== 0, 0, 0];
-  const span = way.t[n] - way.t[n - 1], share = span > 0 ? (time - way.t[n - 1]) / span : 1;
+  let start = way.t[n - 1];
+  // It stands while the line is silent.
+  const gap = data_stands && gaps.find(([from, to]) => from >= start - 1e-3 && to <= way.t[n] + 1e-3);
+  if (gap) { start = Math.min(gap[1], way.t[n]); if (time <= start) return [way.x[n - 1], way.y[n - 1], (way.s[n - 1] & DRAWN) !== 0, 0, 0]; }
+  const span = way.t[n] - start, share = span > 0 ? (time - start) / span : 1;
   const dx = way.x[n] - way.x[n - 1], dy = way.y[n] - way.y[n - 1];
   return [way.x[n - 1] + share * dx, way.y[n - 1] + share * dy, (way.s[n] & DRAWN) !== 0, span > 0 ? dx / span : 0, span > 0 ? dy / span : 0];
 }
@@ -135,9 +151,9 @@ function place(time) { // of the pen: x, y, whether it is down, mm/s
 }
 
 const charts = data.charts.map(({ label, unit, curves }) => {
-  const chart = new Chart($("charts"), label, unit, curves.map(({ role, label, run, data }) => ({ role, label, run, points: curve(data) })), seek);
+  const chart = new Chart($("charts"), label, unit, curves.map(({ role, label, run, data }) => ({ role, label, run, points: curve(data, data_stands && role !== "error" && run !== "bars") })), seek);
   chart.span = [first, last];
-  chart.bands = data.gaps.map(([start, length]) => [start * 1e-6, (start + length) * 1e-6]);
+  chart.bands = gaps;
   return chart;
 });
 
@@ -161,9 +177,9 @@ function show() {
     ["targets reached", (data.reached.every > 1 ? "about " : "") + count(done, data.reached.every, data.reached.count)],
     ["line", gap ? "silent" : "–"],
   ]);
-  $("clock").textContent = (now - first).toFixed(3) + " / " + (last - first).toFixed(3) + " s";
+  $("clock").textContent = now.toFixed(3) + " / " + last.toFixed(3) + " s"; // the log's clock, as everywhere on the page
   $("time").value = Math.round((now - first) / (last - first) * 10000);
-  $("time").setAttribute("aria-valuetext", (now - first).toFixed(3) + " seconds");
+  $("time").setAttribute("aria-valuetext", now.toFixed(3) + " seconds");
   for (const chart of charts) { chart.cursor = now; chart.draw(); }
   sheet.draw();
 }
@@ -222,7 +238,7 @@ rows($("anomalies"), ["time (s)", "what"], odd);
 $("gaps-title").textContent = "Gaps of more than " + data.gap_after_ms + " ms: " + (data.gap_count > data.gaps.length ? data.gap_count + ", the longest " + data.gaps.length + " shown" : data.gap_count);
 rows($("gaps"), ["time (s)", "silent for (s)"], data.gaps.map(([start, length]) => [start, (length * 1e-6).toFixed(3)]));
 $("legend").innerHTML = [
-  ["meant", 1, "desired"], ["ink", 4, "drawn"], ["differs", 4, "drawn, more than " + data.mark_mm + " mm off"], ["undrawn", 2, "desired, not drawn"], ["faint", 2, "drawn later"], ["travel", 1, "pen up"],
+  ["meant", 1, "desired"], ["ink", 4, "drawn"], ["differs", 4, "drawn, more than " + data.mark_mm + " mm off"], ...pens.filter((pen) => pen).map((pen) => ["pen" + pen, 4, "pen " + (pen + 1)]), ["undrawn", 2, "desired, not drawn"], ["faint", 2, "drawn later"], ["travel", 1, "pen up"],
 ].map(([name, width, label]) => "<span><i style='border-top-color:var(--" + name + ");border-top-width:" + width + "px'></i>" + label + "</span>").join("");
 $("exactness").textContent = (data.ink ? "Too long for lines: the ink is a map of cells of " + data.ink.side_mm.toFixed(1) + " mm, each from the time of its first ink; the pen is shown within " : "Lines are shown within ") + data.way_error_mm.toFixed(3) + " mm, at every time; "
   + way.length + " points of the way are kept, and the least and greatest value of each stretch of the charts.";

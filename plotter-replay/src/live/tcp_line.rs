@@ -1,0 +1,129 @@
+//! [`TcpLine`]: a line on a port of 127.0.0.1, for programs that know no pseudo terminals.
+
+use super::line::{Line, lock};
+use crate::serial::{PortError, PortErrorKind};
+use core::time::Duration;
+use std::io::{self, Read as _, Write as _};
+use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream};
+use std::sync::Mutex;
+
+/// A line to whoever has connected to a port of this computer: one program at a time, as on a cable; who goes
+/// away may come again. A second one is sent away.
+#[derive(Debug)]
+pub struct TcpLine {
+    listener: TcpListener,
+    host: Mutex<Option<TcpStream>>,
+    news: Mutex<Vec<&'static str>>,
+    name: String,
+}
+
+impl TcpLine {
+    /// Listens on this port of 127.0.0.1; 0 takes any that is free.
+    ///
+    /// # Errors
+    ///
+    /// [`PortError`] if the port is taken.
+    pub fn open(port: u16) -> Result<Self, PortError> {
+        let refused = |error: io::Error| PortError {
+            port: format!("127.0.0.1:{port}"),
+            kind: match error.kind() {
+                io::ErrorKind::AddrInUse => PortErrorKind::Busy,
+                io::ErrorKind::PermissionDenied => PortErrorKind::NotAllowed,
+                _ => PortErrorKind::Other(error.to_string()),
+            },
+        };
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(refused)?;
+        listener.set_nonblocking(true).map_err(refused)?;
+        let name = listener.local_addr().map_err(refused)?.to_string();
+        Ok(Self { listener, host: Mutex::default(), news: Mutex::default(), name })
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Who has come and gone since it was asked last.
+    #[must_use]
+    pub fn take_news(&self) -> Vec<&'static str> {
+        core::mem::take(&mut *lock(&self.news))
+    }
+
+    /// Lets in who waits; only the first.
+    fn accept(&self, host: &mut Option<TcpStream>) {
+        while let Ok((stream, _)) = self.listener.accept() {
+            if host.is_some() {
+                let _ = stream.shutdown(Shutdown::Both); // it may be gone already
+                lock(&self.news).push("another program was sent away: one has the line");
+                continue;
+            }
+            // What is written goes out at once: a line has no packets.
+            let ready = stream.set_nodelay(true).and_then(|()| stream.set_nonblocking(false));
+            if ready.is_ok() {
+                lock(&self.news).push("a program has connected");
+                *host = Some(stream);
+            }
+        }
+    }
+
+    fn lose(&self, host: &mut Option<TcpStream>) {
+        *host = None;
+        lock(&self.news).push("the program has gone");
+    }
+}
+
+/// A time-out or an interruption, after which the line is as before.
+fn passes(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted)
+}
+
+impl Line for TcpLine {
+    fn send(&self, bytes: &[u8]) -> Result<(), PortError> {
+        self.offer(bytes).map(drop)
+    }
+
+    fn offer(&self, bytes: &[u8]) -> Result<usize, PortError> {
+        let host = &mut *lock(&self.host);
+        let Some(stream) = host else { return Ok(bytes.len()) }; // said to nobody
+        let sent = stream.set_nonblocking(true).and_then(|()| stream.write(bytes));
+        match sent {
+            Ok(count) => {
+                let _ = stream.set_nonblocking(false); // the next reading tells, if it is gone
+                Ok(count)
+            }
+            Err(error) if passes(&error) => {
+                let _ = stream.set_nonblocking(false);
+                Ok(0)
+            }
+            Err(_) => {
+                self.lose(host);
+                Ok(bytes.len())
+            }
+        }
+    }
+
+    fn receive(&self, bytes: &mut [u8], wait: Duration) -> Result<usize, PortError> {
+        let host = &mut *lock(&self.host);
+        self.accept(host);
+        let Some(stream) = host else {
+            std::thread::sleep(wait);
+            return Ok(0);
+        };
+        let read = stream
+            .set_read_timeout(Some(wait.max(Duration::from_micros(100))))
+            .and_then(|()| stream.read(bytes));
+        match read {
+            Ok(0) => {
+                self.lose(host);
+                Ok(0)
+            }
+            Ok(count) => Ok(count),
+            Err(error) if passes(&error) => Ok(0),
+            Err(_) => {
+                self.lose(host);
+                Ok(0)
+            }
+        }
+    }
+}

@@ -1,0 +1,647 @@
+//! [`Lines`]: a session of text lines, Grbl's or mDraw's, as what the machine has drawn.
+//!
+//! A host's line counts once it is answered, and is carried out then by the interpreter that reads drawings.
+//! What it draws is *planned*: nobody says when it is drawn. What the machine tells of itself bounds it:
+//!
+//! ```text
+//! host     G1 X10    G1 X20    G1 X30    ?                               G4 P0
+//! machine  ok        ok        ok        <Run|MPos:13.2,0,0|...>                     ok
+//!          └─ planned ─────────────────┘ └ drawn up to 13.2 ┘ └ planned ┘            └ all is drawn
+//! ```
+//!
+//! Where the log has the motors' steps, they are the way, and the lines only say where it should go.
+
+use super::{AnomalyKind, VirtualPlotter};
+use core::time::Duration;
+use plotter_motion::gcode::{Interpreter, PenConvention, ReadOptions, Reader, ServoCommand, Spacing};
+use plotter_motion::{Pen, PlotOp, Point, Segment, StepPoint, toolpath::chords};
+use std::collections::VecDeque;
+
+/// Which machine's lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Tongue {
+    Grbl,
+    MDraw,
+}
+
+/// What of a session of lines is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LineCounts {
+    /// Lines that the host sent; questions and orders of one byte are none.
+    pub sent: u64,
+    /// Lines that the machine has taken.
+    pub accepted: u64,
+    /// Lines that it has refused.
+    pub refused: u64,
+    /// Until when the machine has told where it was.
+    pub told_until: Option<Duration>,
+    /// Moves at the end that were taken, and of which nothing says that they were drawn.
+    pub assumed: u64,
+}
+
+/// Bytes of a line that are kept.
+const MOST_LINE: usize = 256;
+/// Lines without an answer that are kept.
+const MOST_UNANSWERED: usize = 4_096;
+/// Moves that a machine has taken and not made, at most: queue and look-ahead of the largest are smaller.
+const MOST_PLANNED_LINES: usize = 48;
+/// How far from its way a machine may say to be, mm: it counts steps, and its path may round corners.
+const ON_WAY_MM: f64 = 0.15;
+/// How far a corner is rounded at most, mm: beyond it the machine is elsewhere.
+const NEAR_WAY_MM: f64 = 2.0;
+
+/// A straight move that is not made yet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Planned {
+    pen: Pen,
+    number: u8,
+    to: Point,
+    /// The line that it comes from, counted from the first.
+    line: u64,
+}
+
+/// What is known of a session of lines.
+#[derive(Clone, Debug)]
+pub(super) struct Lines {
+    tongue: Tongue,
+    reader: Reader,
+    interpreter: Interpreter,
+    /// The host's line so far.
+    line: Vec<u8>,
+    ended_by_return: bool,
+    unanswered: VecDeque<Vec<u8>>,
+    /// The machine's line so far.
+    answer: Vec<u8>,
+    /// Whether mDraw's machine has said that the line under way is wrong.
+    is_refused: bool,
+    planned: VecDeque<Planned>,
+    /// From when on what is planned was being drawn.
+    since: Duration,
+    knows_place: bool,
+    last_report: Option<Duration>,
+    last_answer: Option<Duration>,
+    has_steps: bool,
+    /// The pen that the lines have selected.
+    pen_number: u8,
+    counts: LineCounts,
+}
+
+impl Lines {
+    pub(super) fn new(tongue: Tongue, pen: PenConvention, start: Option<Point>) -> Self {
+        let pen = if tongue == Tongue::MDraw { PenConvention::MDRAW } else { pen };
+        let spacing = if tongue == Tongue::MDraw { Spacing::Required } else { Spacing::default() };
+        let mut interpreter = Interpreter::with_options(ReadOptions { pen, ..ReadOptions::default() });
+        interpreter.stand_at(start.unwrap_or(Point::ORIGIN));
+        Self {
+            tongue,
+            reader: Reader::with_spacing(spacing),
+            interpreter,
+            line: Vec::new(),
+            ended_by_return: false,
+            unanswered: VecDeque::new(),
+            answer: Vec::new(),
+            is_refused: false,
+            planned: VecDeque::new(),
+            since: Duration::ZERO,
+            knows_place: start.is_some(),
+            last_report: None,
+            last_answer: None,
+            has_steps: false,
+            pen_number: 0,
+            counts: LineCounts::default(),
+        }
+    }
+
+    /// A line carried out: what it draws, and whether all before is drawn when it is answered.
+    fn carry_out(&mut self, line: &[u8]) -> Result<(Vec<PlotOp>, bool), ()> {
+        let text = line.trim_ascii();
+        if self.tongue == Tongue::MDraw {
+            return Ok((self.carry_out_mdraw(text), false));
+        }
+        let (text, is_jog) = match text.strip_prefix(b"$J=") {
+            Some(jog) => (jog, true),
+            None if text.first() == Some(&b'$') => return Ok((Vec::new(), false)),
+            None => (text, false),
+        };
+        let before = self.interpreter;
+        if is_jog {
+            // It has modes of its own, and the pen stays as it is.
+            let (moves, is_wrong) = self.interpret(&[b"G1".as_slice(), text].concat());
+            let at = self.interpreter.modes().position;
+            self.interpreter = before;
+            self.interpreter.stand_at(at);
+            let moves = moves.into_iter().filter_map(PlotOp::target).map(|to| PlotOp::Travel { to });
+            return if is_wrong { Err(()) } else { Ok((moves.collect(), false)) };
+        }
+        let (ops, is_wrong) = self.interpret(text);
+        if is_wrong {
+            return Err(());
+        }
+        let upper = text.to_ascii_uppercase();
+        let has = |word: &[u8]| {
+            upper.windows(word.len()).enumerate().any(|(at, window)| {
+                window == word && !upper.get(at + word.len()).is_some_and(u8::is_ascii_digit)
+            })
+        };
+        let waits = has(b"G4") || has(b"G04") || has(b"M2") || has(b"M02") || has(b"M30");
+        Ok((ops, waits))
+    }
+}
+
+impl Lines {
+    /// What the interpreter makes of a line, and whether it does not understand it.
+    fn interpret(&mut self, text: &[u8]) -> (Vec<PlotOp>, bool) {
+        let (mut ops, mut is_wrong) = (Vec::new(), false);
+        for &byte in text.iter().chain(b"\n") {
+            let Some(block) = self.reader.push(byte) else { continue };
+            if self.interpreter.push(block).is_err() {
+                continue; // cannot be: all of the line before has been taken
+            }
+            while let Some(op) = self.interpreter.next_op() {
+                match op {
+                    Ok(op) => ops.push(op),
+                    Err(error) => is_wrong |= !error.is_notice(),
+                }
+            }
+        }
+        (ops, is_wrong)
+    }
+
+    /// The same of a line of mDraw's, whose machine does nothing where it does not understand, and to which
+    /// some words are others than elsewhere.
+    fn carry_out_mdraw(&mut self, line: &[u8]) -> Vec<PlotOp> {
+        let text = String::from_utf8_lossy(line).to_ascii_uppercase();
+        let mut words = text.split_whitespace();
+        match words.next() {
+            Some("G0" | "G00" | "G1" | "G01" | "G90" | "G91" | "M1") => self.interpret(line).0,
+            // A laser that burns is a pen that is down.
+            Some("M4") => {
+                let burns =
+                    words.next().and_then(|power| power.parse().ok()).is_some_and(|power: f64| power > 0.0);
+                self.interpret(if burns { b"M1 90" } else { b"M1 160" }).0
+            }
+            Some("M2") => {
+                let degrees = |letter: char| {
+                    let number = |word: &str| word.strip_prefix(letter)?.parse().ok();
+                    text.split_whitespace().find_map(number).filter(|deg: &f64| (0.0..=180.0).contains(deg))
+                };
+                if let (Some(up), Some(down)) = (degrees('U'), degrees('D')) {
+                    let at = self.interpreter.modes().position;
+                    let pen = PenConvention::Servo { command: ServoCommand::M1, up, down };
+                    self.interpreter =
+                        Interpreter::with_options(ReadOptions { pen, ..ReadOptions::default() });
+                    self.interpreter.stand_at(at);
+                }
+                Vec::new()
+            }
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// What a report of Grbl says: its state, and where it is.
+fn report(line: &str) -> Option<(&str, Option<Point>)> {
+    let inside = line.strip_prefix('<')?.strip_suffix('>')?;
+    let mut fields = inside.split('|');
+    let state = fields.next()?.split(':').next()?;
+    let place = |text: &str| {
+        let mut numbers = text.split(',').map(str::parse::<f64>);
+        let (x, y) = (numbers.next()?.ok()?, numbers.next()?.ok()?);
+        (x.abs() <= 1e6 && y.abs() <= 1e6).then(|| Point::new(x, y))
+    };
+    let at = fields.find_map(|field| field.strip_prefix("MPos:").and_then(place));
+    Some((state, at))
+}
+
+/// What mDraw's machine says of its place.
+fn told_place(line: &str) -> Option<Point> {
+    let (x, y) = line.strip_prefix("POS X")?.split_once(" Y")?;
+    let (x, y): (f64, f64) = (x.parse().ok()?, y.trim().parse().ok()?);
+    (x.abs() <= 1e6 && y.abs() <= 1e6).then(|| Point::new(x, y))
+}
+
+impl VirtualPlotter {
+    /// What of a session of text lines is known; `None` for other protocols.
+    #[must_use]
+    pub fn line_counts(&self) -> Option<LineCounts> {
+        self.lines.as_ref().map(|lines| lines.counts)
+    }
+
+    /// A motor made a step: from here on the steps are the way.
+    pub(super) fn line_step(&mut self) {
+        if let Some(lines) = &mut self.lines {
+            lines.has_steps = true;
+        }
+        self.begin_planned();
+        // What the plan rounds off is passed over with the next place that is met.
+        let counted = self.counted;
+        let Some(lines) = &self.lines else { return };
+        let met = lines.planned.iter().position(|planned| self.settings.to_counts(planned.to) == counted);
+        if met == Some(0) {
+            self.planned_reached();
+        }
+    }
+
+    /// Takes a byte of the host.
+    pub(super) fn host_line_byte(&mut self, byte: u8) {
+        let Some(lines) = &mut self.lines else { return };
+        let is_grbl = lines.tongue == Tongue::Grbl;
+        match byte {
+            b'?' | b'!' | b'~' | 0x80.. if is_grbl => {}
+            0x18 if is_grbl => {
+                lines.line.clear();
+                lines.unanswered.clear();
+                lines.reader = Reader::with_spacing(Spacing::default());
+                self.forget_planned();
+            }
+            b'\n' if core::mem::take(&mut lines.ended_by_return) => {}
+            b'\n' | b'\r' => {
+                lines.ended_by_return = byte == b'\r';
+                let line = core::mem::take(&mut lines.line);
+                self.host_line(line);
+            }
+            _ => {
+                lines.ended_by_return = false;
+                if lines.line.len() < MOST_LINE {
+                    lines.line.push(byte);
+                }
+            }
+        }
+    }
+
+    fn host_line(&mut self, line: Vec<u8>) {
+        let Some(lines) = &mut self.lines else { return };
+        lines.counts.sent = lines.counts.sent.saturating_add(u64::from(!line.trim_ascii().is_empty()));
+        if lines.unanswered.len() >= MOST_UNANSWERED {
+            lines.unanswered.pop_front();
+        }
+        if lines.planned.is_empty() {
+            lines.since = self.now;
+        }
+        lines.unanswered.push_back(line);
+        // A machine of mDraw's answers when it has moved; its steps come before.
+        if lines.tongue == Tongue::MDraw && lines.unanswered.len() == 1 {
+            self.plan_mdraw();
+        }
+    }
+
+    /// mDraw's machine begins with its line.
+    fn plan_mdraw(&mut self) {
+        let Some(lines) = &mut self.lines else { return };
+        let Some(line) = lines.unanswered.front().cloned() else { return };
+        lines.is_refused = false;
+        self.plan(&line);
+    }
+
+    /// Takes a byte of the machine.
+    pub(super) fn controller_line_byte(&mut self, byte: u8) {
+        let Some(lines) = &mut self.lines else { return };
+        if byte != b'\n' && byte != b'\r' {
+            if lines.answer.len() < MOST_LINE {
+                lines.answer.push(byte);
+            }
+            return;
+        }
+        let answer = core::mem::take(&mut lines.answer);
+        if answer.is_empty() {
+            return;
+        }
+        let answer = String::from_utf8_lossy(&answer).trim().to_owned();
+        match lines.tongue {
+            Tongue::Grbl => self.grbl_answer(&answer),
+            Tongue::MDraw => self.mdraw_answer(&answer),
+        }
+    }
+
+    fn grbl_answer(&mut self, answer: &str) {
+        if let Some((state, at)) = report(answer) {
+            match (state, at) {
+                ("Idle" | "Sleep" | "Check", Some(at)) => self.stands_at(at),
+                ("Alarm", Some(at)) => {
+                    self.forget_planned();
+                    self.stands_at(at);
+                }
+                // Homing goes its own way.
+                ("Home", _) | (_, None) => {}
+                (_, Some(at)) => self.passes(at),
+            }
+        } else if answer == "ok" {
+            self.answered(true, answer);
+        } else if answer.starts_with("error") {
+            self.answered(false, answer);
+        } else if let Some(alarm) = answer.strip_prefix("ALARM:") {
+            self.note(self.now, AnomalyKind::Alarm { number: alarm.trim().parse().unwrap_or(0) });
+        } else if answer.starts_with("Grbl ") {
+            // It was switched on, or reset: nothing of before will be drawn.
+            if let Some(lines) = &mut self.lines {
+                lines.unanswered.clear();
+            }
+            self.forget_planned();
+        } else if answer == "[MSG:Pgm End]" {
+            self.all_drawn(self.now);
+        }
+    }
+
+    fn mdraw_answer(&mut self, answer: &str) {
+        let Some(lines) = &mut self.lines else { return };
+        if let Some(at) = told_place(answer) {
+            self.stands_at(at);
+        } else if answer.starts_with("error") {
+            lines.is_refused = true;
+            lines.planned.clear();
+            self.next = None;
+        } else if answer.contains("OK") {
+            let is_good = !lines.is_refused;
+            self.answered(is_good, "error");
+            self.plan_mdraw();
+        }
+    }
+
+    /// The line that has waited longest is answered.
+    fn answered(&mut self, is_good: bool, answer: &str) {
+        let now = self.now;
+        let Some(lines) = &mut self.lines else { return };
+        lines.last_answer = Some(now);
+        let Some(line) = lines.unanswered.pop_front() else { return };
+        if line.trim_ascii().is_empty() {
+            return;
+        }
+        if !is_good {
+            lines.counts.refused = lines.counts.refused.saturating_add(1);
+            let code = answer.rsplit(':').next().and_then(|code| code.trim().parse().ok()).unwrap_or(0);
+            let line = String::from_utf8_lossy(&line).trim().to_owned();
+            self.note(now, AnomalyKind::LineRefused { line, code });
+            return;
+        }
+        lines.counts.accepted = lines.counts.accepted.saturating_add(1);
+        let homes = match lines.tongue {
+            Tongue::Grbl => line.trim_ascii().eq_ignore_ascii_case(b"$H"),
+            Tongue::MDraw => line.trim_ascii().to_ascii_uppercase().starts_with(b"G28"),
+        };
+        if homes {
+            self.forget_planned();
+            self.put_at(Point::ORIGIN);
+        } else if lines.tongue == Tongue::MDraw || self.plan(&line) {
+            self.all_drawn(now);
+        }
+    }
+
+    /// Takes into the plan what a line draws; says whether all is drawn when it is answered.
+    fn plan(&mut self, line: &[u8]) -> bool {
+        let now = self.now;
+        let tolerance_mm = 0.5 * self.settings.x_mm_per_pulse.min(self.settings.y_mm_per_pulse);
+        let Some(lines) = &mut self.lines else { return false };
+        let from = lines.interpreter.modes().position;
+        let Ok((ops, waits)) = lines.carry_out(line) else {
+            let line = String::from_utf8_lossy(line).trim().to_owned();
+            self.note(now, AnomalyKind::LineNotUnderstood { line });
+            return false;
+        };
+        let number = lines.counts.sent.saturating_sub(lines.unanswered.len() as u64);
+        let mut added = 0_u64;
+        for op in chords([PlotOp::Travel { to: from }].into_iter().chain(ops), tolerance_mm).skip(1) {
+            if let PlotOp::SelectPen { pen } = op {
+                lines.pen_number = pen;
+            }
+            let pen = if matches!(op, PlotOp::Draw { .. }) { Pen::Down } else { Pen::Up };
+            if let Some(to) = op.target() {
+                lines.planned.push_back(Planned { pen, number: lines.pen_number, to, line: number });
+                added = added.saturating_add(1);
+            }
+        }
+        self.target_count = self.target_count.saturating_add(added);
+        let first = lines.planned.front().map_or(number, |planned| planned.line);
+        let drawn = usize::try_from(number.saturating_sub(first)).unwrap_or(0);
+        if drawn > MOST_PLANNED_LINES {
+            let until = number.saturating_sub(MOST_PLANNED_LINES as u64);
+            let count = lines.planned.iter().take_while(|planned| planned.line < until).count();
+            self.draw(count, now);
+        }
+        self.begin_planned();
+        waits
+    }
+
+    /// The plan's next place is where the pen goes now.
+    fn begin_planned(&mut self) {
+        if self.next.is_some() {
+            return;
+        }
+        let Some(planned) = self.lines.as_ref().and_then(|lines| lines.planned.front().copied()) else {
+            return;
+        };
+        let target = self.settings.to_counts(planned.to);
+        self.next = Some(target);
+        self.under_way = 1;
+        if !self.pen_recorded {
+            self.set_pen(planned.pen);
+        }
+        self.set_pen_number(planned.number);
+        self.leg.target = Some(target);
+        if self.targets.len() < self.settings.max_entries {
+            self.targets.push((self.now, target));
+        }
+        if self.counted == target && self.lines.as_ref().is_some_and(|lines| lines.has_steps) {
+            self.planned_reached();
+        }
+    }
+
+    /// The place that is under way is reached.
+    fn planned_reached(&mut self) {
+        if let Some(lines) = &mut self.lines {
+            lines.planned.pop_front();
+            // Its lines name places: where it was before matters no more.
+            lines.knows_place = true;
+        }
+        self.target_reached();
+        self.begin_planned();
+    }
+
+    /// All that is planned is drawn by `until`.
+    fn all_drawn(&mut self, until: Duration) {
+        let count = self.lines.as_ref().map_or(0, |lines| lines.planned.len());
+        self.draw(count, until);
+        if let Some(lines) = &mut self.lines {
+            lines.counts.told_until = Some(until);
+        }
+    }
+
+    /// The next `count` moves of the plan are drawn by `until`: evenly from when they may have begun.
+    fn draw(&mut self, count: usize, until: Duration) {
+        let at = self.settings.to_sheet(self.counted);
+        let Some(lines) = &self.lines else { return };
+        let since = lines.since.min(until);
+        let has_steps = lines.has_steps;
+        let way = |from: &mut Point, to: Point| Some(core::mem::replace(from, to).distance(to));
+        let lengths: Vec<f64> =
+            lines.planned.iter().take(count).scan(at, |from, planned| way(from, planned.to)).collect();
+        let total: f64 = lengths.iter().sum();
+        let (now, mut done) = (self.now, 0.0);
+        for length in lengths {
+            done += length;
+            let share = if total > 0.0 { done / total } else { 1.0 };
+            self.now = since.saturating_add(until.saturating_sub(since).mul_f64(share.clamp(0.0, 1.0)));
+            self.begin_planned();
+            let Some(target) = self.next else { break };
+            if !has_steps {
+                self.counted = target;
+                self.add_point();
+            }
+            if self.counted == target {
+                self.planned_reached();
+            } else {
+                // Its steps have passed it by, as those of a rounded corner do.
+                self.next = None;
+                self.from = target;
+                if let Some(lines) = &mut self.lines {
+                    lines.planned.pop_front();
+                }
+            }
+        }
+        self.now = now;
+        if let Some(lines) = &mut self.lines {
+            lines.since = until;
+        }
+    }
+
+    /// The machine stands at `at`, and has nothing more to do.
+    fn stands_at(&mut self, at: Point) {
+        let Some(lines) = &mut self.lines else { return };
+        lines.last_report = Some(self.now);
+        if !lines.knows_place && lines.planned.is_empty() {
+            self.begins_at(at);
+            return;
+        }
+        // What lies unanswered may be in its hands by now.
+        if lines.unanswered.is_empty() || lines.tongue == Tongue::MDraw {
+            self.all_drawn(self.now);
+        }
+        self.compare_place(at);
+    }
+
+    /// The machine says to be at `at`, on its way.
+    fn passes(&mut self, at: Point) {
+        let counted = self.settings.to_sheet(self.counted);
+        let now = self.now;
+        let Some(lines) = &mut self.lines else { return };
+        lines.last_report = Some(now);
+        lines.counts.told_until = Some(now);
+        if lines.has_steps {
+            return;
+        }
+        let mut from = counted;
+        let mut nearest: Option<(f64, usize)> = None;
+        for (index, planned) in lines.planned.iter().enumerate() {
+            let away = Segment::new(from, planned.to).distance(at);
+            from = planned.to;
+            if nearest.is_none_or(|(least, _)| away < least - ON_WAY_MM) {
+                nearest = Some((away, index));
+            }
+            if away <= ON_WAY_MM {
+                break;
+            }
+        }
+        match nearest {
+            Some((away, index)) if away <= NEAR_WAY_MM => {
+                lines.knows_place = true;
+                // The part of the last move counts with its own length.
+                self.draw(index, now);
+                self.begin_planned();
+                self.counted = self.settings.to_counts(at);
+                self.add_point();
+            }
+            _ if !lines.knows_place => self.begins_at(at),
+            _ => self.compare_place(at),
+        }
+    }
+
+    /// What the machine says of its place is compared with where it should be, and believed.
+    fn compare_place(&mut self, at: Point) {
+        let reported = self.settings.to_counts(at);
+        let off = StepPoint::new(
+            reported.x.saturating_sub(self.counted.x),
+            reported.y.saturating_sub(self.counted.y),
+        );
+        let away = at.distance(self.settings.to_sheet(self.counted));
+        if away > ON_WAY_MM + self.settings.x_mm_per_pulse {
+            self.note(self.now, AnomalyKind::ReportedElsewhere { off });
+            self.put_at(at);
+        }
+    }
+
+    /// The recording begins with the pen at `at`.
+    fn begins_at(&mut self, at: Point) {
+        if let Some(lines) = &mut self.lines {
+            lines.knows_place = true;
+            lines.interpreter.stand_at(at);
+        }
+        self.put_at(at);
+    }
+
+    /// The pen is at `at` without having drawn its way there.
+    fn put_at(&mut self, at: Point) {
+        let counted = self.settings.to_counts(at);
+        if let Some(lines) = &mut self.lines {
+            lines.knows_place = true;
+            if lines.planned.is_empty() {
+                lines.interpreter.stand_at(at);
+            }
+        }
+        self.end_leg(None);
+        (self.counted, self.from) = (counted, counted);
+        self.leg = self.begin_leg();
+    }
+
+    /// Nothing of what is planned will be drawn.
+    fn forget_planned(&mut self) {
+        if let Some(lines) = &mut self.lines {
+            lines.planned.clear();
+        }
+        self.next = None;
+        self.end_leg(None);
+    }
+
+    /// The recording is over.
+    pub(super) fn finish_lines(&mut self) {
+        let Some(lines) = &mut self.lines else { return };
+        let unanswered = lines.unanswered.iter().filter(|line| !line.trim_ascii().is_empty()).count();
+        if unanswered > 0 && lines.last_answer.is_none() {
+            // Only one side was recorded: all of it is taken as it is.
+            while let Some(line) = self.lines.as_mut().and_then(|lines| lines.unanswered.pop_front()) {
+                self.plan(&line);
+            }
+        } else if unanswered > 0 {
+            self.note(self.now, AnomalyKind::Unanswered { lines: unanswered as u64 });
+        }
+        let Some(lines) = &mut self.lines else { return };
+        // A machine that was on its way when it was heard last has not drawn what comes after that.
+        let is_told = lines.last_report.is_some_and(|told| lines.last_answer.is_none_or(|last| told > last));
+        let left = lines.planned.len() as u64;
+        if left == 0 || lines.has_steps {
+            return;
+        }
+        if is_told {
+            self.note(self.now, AnomalyKind::NotKnownDrawn { moves: left });
+            self.forget_planned();
+        } else {
+            lines.counts.assumed = left;
+            let count = lines.planned.len();
+            self.draw(count, self.now);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reports_are_read() {
+        let at = Some(Point::new(62.617, 35.933));
+        assert_eq!(report("<Run|MPos:62.617,35.933,0.000|Bf:0,11|FS:5400,0>"), Some(("Run", at)));
+        assert_eq!(report("<Hold:0|WPos:1,2,3>"), Some(("Hold", None)));
+        assert_eq!(report("<Idle|MPos:nan,0,0>"), Some(("Idle", None)));
+        assert_eq!(report("ok"), None);
+        assert_eq!(told_place("POS X3.00 Y4.00"), Some(Point::new(3.0, 4.0)));
+        assert_eq!(told_place("POS X3.00"), None);
+    }
+}
