@@ -32,9 +32,9 @@ pub trait Modes: sealed::Sealed {
 /// All ways of planning: [`PlannerSettings`] choose one for each job.
 ///
 /// A block takes a Cortex-M4F at most so many instructions, on four drawings
-/// (`examples/firmware/counts/check` of the repository): 4938 in [`PathMode::Exact`], 182,000 within a
-/// tolerance of 0.05 mm, and with [`PlannerSettings::jerk_mm_s3`] 8.2 million; in the mean 2741, 32,900 and
-/// 417,000.
+/// (`examples/firmware/counts/check` of the repository): 4879 in [`PathMode::Exact`], 182,000 within a
+/// tolerance of 0.05 mm, and with [`PlannerSettings::jerk_mm_s3`] 8.2 million, in parts of at most 196,000
+/// ([`Planner::prepare`](super::Planner::prepare)); in the mean 2707, 32,800 and 421,000.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct AllModes;
 

@@ -235,10 +235,12 @@ fn in_two_halves(
     let speed_mm_s = f64::from(rate) / 87.58;
     let planner = PlannerSettings { speed_mm_s, travel_speed_mm_s: speed_mm_s, accel_mm_s2: 10_000.0, ..planner };
     let (mut plan, mut tick) = (Tally::default(), Tally::default());
+    // The emulator takes as long for a slow processor's instructions.
+    let part = if cfg!(feature = "rp2040") { 2 } else { 1 };
     for drawing in drawings {
         let figures = match *drawing {
-            "hatch" => ahead::draw(counter, planner, memory, || drawings::hatch().take(8)),
-            "spiral" => ahead::draw(counter, planner, memory, || drawings::spiral().take(300)),
+            "hatch" => ahead::draw(counter, planner, memory, || drawings::hatch().take(8 / part)),
+            "spiral" => ahead::draw(counter, planner, memory, || drawings::spiral().take(300 / part)),
             "zigzag" => ahead::draw(counter, planner, memory, || drawings::zigzag().take(80)),
             _ => ahead::draw(counter, planner, memory, || drawings::strokes().take(64)),
         };
@@ -261,8 +263,8 @@ fn all_in_two_halves(counter: &Counter) {
     let memory = &mut memory;
     let exact = PlannerSettings::default();
     if cfg!(feature = "rp2040") {
-        for rate in [4_000, 6_000, 8_000, 10_000, 15_000, 20_000] {
-            in_two_halves(counter, memory, rate, "exact", exact, &["hatch", "spiral", "strokes"]);
+        for rate in [2_000, 3_000, 4_000, 6_000] {
+            in_two_halves(counter, memory, rate, "exact", exact, &["hatch", "spiral"]);
         }
     } else {
         let path = PathMode::Tolerance { path_tolerance_mm: 0.05 };
