@@ -19,6 +19,8 @@ mod sheet;
 #[cfg(feature = "toml")]
 mod spelling;
 mod stepper;
+#[cfg(feature = "third-motor")]
+mod third_motor;
 #[cfg(feature = "toml")]
 mod toml_error;
 #[cfg(feature = "toml")]
@@ -42,7 +44,7 @@ pub use stepper::{
     StepperConfig,
 };
 #[cfg(feature = "third-motor")]
-pub use stepper::{SecondMotorChoice, SecondMotorConfig, ZConfig};
+pub use third_motor::{SecondMotorChoice, SecondMotorConfig, ZConfig};
 #[cfg(feature = "toml")]
 pub use toml_error::{TomlError, TomlPlace};
 pub use transmission::TransmissionConfig;

@@ -112,11 +112,8 @@ const PENS: NumberRule = NumberRule {
 const SIGN_OF_GAIN: &str = "for a motor that runs away swap its wires, not the sign";
 const DUTY_OF_255: &str = "duty counts in steps of 255, as the published gains do";
 
-/// How many keys tell of a third motor.
-const THIRD_MOTOR: usize = if cfg!(feature = "third-motor") { 13 } else { 0 };
-
 /// Keys that the machine has once.
-static MACHINE: [Rule; 71 + THIRD_MOTOR] = [
+static MACHINE: [Rule; 71] = [
     Rule { key: "schema", form: Form::Whole(SCHEMA) },
     Rule { key: "name", form: Form::Text(super::MachineName::MAX_BYTES) },
     Rule { key: "drive", form: Form::Choice(&["dc", "stepper"]) },
@@ -389,74 +386,6 @@ static MACHINE: [Rule; 71 + THIRD_MOTOR] = [
         "mm",
         "a little more than the longer axis",
     ),
-    #[cfg(feature = "third-motor")]
-    Rule { key: "z.enabled", form: Form::Switch },
-    #[cfg(feature = "third-motor")]
-    number(
-        "z.steps_per_mm",
-        |c| c.z.steps_per_mm,
-        (0.01, 10000.0),
-        "steps/mm",
-        "a spindle of 8 mm a turn with 3200 steps has 400",
-    ),
-    #[cfg(feature = "third-motor")]
-    number(
-        "z.speed_mm_s",
-        |c| c.z.speed_mm_s,
-        (0.01, 10000.0),
-        "mm/s",
-        "a spindle of 8 mm makes 10 with 75 turns a minute",
-    ),
-    #[cfg(feature = "third-motor")]
-    number(
-        "z.accel_mm_s2",
-        |c| c.z.accel_mm_s2,
-        (0.1, 1000000.0),
-        "mm/s^2",
-        "100 lifts a pen by 5 mm in half a second",
-    ),
-    #[cfg(feature = "third-motor")]
-    number(
-        "z.travel_mm",
-        |c| c.z.travel_mm,
-        (0.01, 65535.0),
-        "mm",
-        "how far the tool goes up and down in all",
-    ),
-    #[cfg(feature = "third-motor")]
-    Rule { key: "z.lifts_pen", form: Form::Switch },
-    #[cfg(feature = "third-motor")]
-    number("z.up_mm", |c| c.z.up_mm, (0.0, 65535.0), "mm", "a few millimetres above the sheet"),
-    #[cfg(feature = "third-motor")]
-    number("z.down_mm", |c| c.z.down_mm, (0.0, 65535.0), "mm", "where the pen touches the sheet"),
-    #[cfg(feature = "third-motor")]
-    Rule { key: "z.homes", form: Form::Switch },
-    #[cfg(feature = "third-motor")]
-    number(
-        "z.start_rate_hz",
-        |c| c.z.start_rate_hz,
-        (1.0, 1000000.0),
-        "pulses/s",
-        "a motor without a load starts with 2000 of 3200 steps a turn",
-    ),
-    #[cfg(feature = "third-motor")]
-    Rule { key: "second_motor.axis", form: Form::Choice(&["none", "x", "y"]) },
-    #[cfg(feature = "third-motor")]
-    number(
-        "second_motor.offset_mm",
-        |c| c.second_motor.offset_mm,
-        (-100.0, 100.0),
-        "mm",
-        "measure both diagonals of a square that the machine has drawn",
-    ),
-    #[cfg(feature = "third-motor")]
-    number(
-        "second_motor.max_skew_mm",
-        |c| c.second_motor.max_skew_mm,
-        (0.01, 1000.0),
-        "mm",
-        "by how much the gantry may be racked without harm",
-    ),
     whole(
         "stepper_motor.full_steps_per_turn",
         |c| f64::from(c.stepper_motor.full_steps_per_turn),
@@ -702,8 +631,13 @@ static Y: [Rule; 20] = axis_rules!(y);
 
 /// All keys, in the order of the documentation.
 pub(super) fn rules() -> impl Iterator<Item = &'static Rule> {
+    #[cfg(feature = "third-motor")]
+    let third_motor = &super::third_motor::RULES;
+    #[cfg(not(feature = "third-motor"))]
+    let third_motor = &[];
     MACHINE
         .iter()
+        .chain(third_motor)
         .chain(&LATENCY)
         .chain(&BELT)
         .chain(&super::sheet::RULES)

@@ -4,6 +4,7 @@ use super::code::{Code, Group};
 use super::line::Line;
 use super::lines::Lines;
 use super::machine::spindle_number;
+use super::modes::MM_PER_INCH;
 use super::{Block, DwellUnit, Error, LaserCommand, PenConvention, ReadOptions, ServoCommand, Words};
 
 /// Greatest angle of a servo, degrees: what is more is a tone, or switches the servo off.
@@ -241,7 +242,7 @@ impl Detection {
         }
         self.motion = line.of(Group::Motion).unwrap_or(self.motion);
         self.relative = line.chooses(Code::Relative, self.relative);
-        self.unit_mm = if line.chooses(Code::Inches, self.unit_mm != 1.0) { 25.4 } else { 1.0 };
+        self.unit_mm = if line.chooses(Code::Inches, self.unit_mm != 1.0) { MM_PER_INCH } else { 1.0 };
         let may_move = line.may_move() && self.motion != Code::NoMotion;
         let moves = may_move && line.has(b"XY");
         self.take_told(&line);

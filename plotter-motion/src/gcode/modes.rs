@@ -52,3 +52,12 @@ pub struct Modes {
     /// Whether the pen has been lowered, by a spindle's words, a servo's or a height.
     pub pen_down: bool,
 }
+
+pub(crate) const MM_PER_INCH: f64 = 25.4;
+
+impl Modes {
+    /// Length of the unit of coordinates, mm.
+    pub(crate) const fn unit_mm(&self) -> f64 {
+        if self.inches { MM_PER_INCH } else { 1.0 }
+    }
+}

@@ -339,10 +339,10 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         }
     }
 
-    /// Does a part of what [`next_action`](Self::next_action) has to do, and says whether there is more to
-    /// do before that only has to give it out. For a main loop that has other things to do between: with a
-    /// limited jerk a phase takes a search of up to some ten parts. Nothing depends on it but when the work is
-    /// done.
+    /// Does a part of what [`next_action`](Self::next_action) has to do, and says whether there is more to do
+    /// before that only has to give it out. For a main loop that has other things to do between: with a
+    /// limited jerk a phase takes a search of up to some ten parts. Nothing depends on it but when the work
+    /// is done.
     ///
     /// ```
     /// # use plotter_motion::{Planner, PlannerSettings, PlotOp, Point, planner::PlanError};

@@ -1,14 +1,15 @@
 //! [`Rise`]: how a path rises and falls, and what that allows.
 //!
 //! A block's length is that of its way in space. Along it z changes evenly: with l the length in the plane, h
-//! what it rises by and L = √(l² + h²), a speed v along it is v l/L in the plane and v h/L of z. So z's limits
-//! become limits along the block, divided by |h|/L.
+//! what it rises by and L = √(l² + h²), a speed v along it is v l/L in the plane and v h/L of z. So z's
+//! limits become limits along the block, divided by |h|/L.
 //!
 //! Where one block rises in another way than the next, z's speed jumps. A motor cannot tell a jump from an
 //! acceleration if that makes it within one step: with σ = h/L before and τ behind, |v² τ|τ| − v² σ|σ|| is at
 //! most 2 a times a step. Many short blocks have many jumps: each is no more than a small share of what the
 //! acceleration makes in the time of the shorter block. What the speed in the plane jumps by is held to the
-//! junction's deviation in the same way as z's to a step. Before and after a block of z alone the machine stands.
+//! junction's deviation in the same way as z's to a step. Before and after a block of z alone the machine
+//! stands.
 
 use super::block::Bend;
 use super::limits::Limits;

@@ -8,8 +8,8 @@ use super::ramps::Ramps;
 use super::ring::Ring;
 use super::s_curve::SCurveState;
 
-/// Looks of a search for a phase that are taken together: each reckons the braking for every place ahead, so a
-/// part takes about as long as what goes before the search.
+/// Looks of a search for a phase that are taken together: each reckons the braking for every place ahead, so
+/// a part takes about as long as what goes before the search.
 const LOOKS: u32 = 2;
 
 /// What is left of the course given last: constant accelerations, or S-curves where the settings have a jerk.

@@ -18,7 +18,8 @@ use std::time::Duration;
 pub(crate) struct Info {
     /// The log; packed if its name ends in .gz.
     log: PathBuf,
-    /// Where the pen is when the log begins, mm [default: where the machine first says to be, else the origin].
+    /// Where the pen is when the log begins, mm [default: where the machine first says to be, else the
+    /// origin].
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     origin: Option<Point>,
 }

@@ -45,7 +45,8 @@ pub(crate) struct Render {
     /// Mark what was drawn farther than this from its line, mm.
     #[arg(long, value_name = "MM", default_value_t = PageSettings::default().mark_mm, value_parser = length)]
     mark_mm: f64,
-    /// Where the pen is when the log begins, mm [default: where the machine first says to be, else the origin].
+    /// Where the pen is when the log begins, mm [default: where the machine first says to be, else the
+    /// origin].
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     origin: Option<Point>,
     /// Show the moves with the pen up, too.

@@ -1,8 +1,8 @@
 //! sigrok-cli's annotations of the UART decoder: `109-189 uart-1: 02`, samples from and to.
 //!
 //! A run without `-A uart=rx-data` also writes the bits (`0`, `1`), `Start bit`, `Stop bit` and errors: only
-//! two hex digits are a byte, or, with the decoder's `format=ascii`, `[02]`. One file has both directions where
-//! two decoders ran (`uart-1`, `uart-2`), or one with both lines and the names of its rows.
+//! two hex digits are a byte, or, with the decoder's `format=ascii`, `[02]`. One file has both directions
+//! where two decoders ran (`uart-1`, `uart-2`), or one with both lines and the names of its rows.
 
 use super::hex_dump::hex_byte;
 use super::{Chunk, Format, ImportSettings, Lines, Saw};

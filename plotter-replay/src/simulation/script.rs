@@ -40,7 +40,7 @@ impl fmt::Display for ScriptError {
 
 impl core::error::Error for ScriptError {}
 
-/// Latest time of a script, s: eleven days.
+/// Latest time of a script, s: eleven days, longer than any drawing takes.
 const LATEST_S: f64 = 1e6;
 
 impl Script {

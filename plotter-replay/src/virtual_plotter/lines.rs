@@ -45,9 +45,11 @@ const MOST_LINE: usize = 256;
 const MOST_UNANSWERED: usize = 4_096;
 /// Moves that a machine has taken and not made, at most: queue and look-ahead of the largest are smaller.
 const MOST_PLANNED_LINES: usize = 48;
-/// How far from its way a machine may say to be, mm: it counts steps, and its path may round corners.
+/// How far from its way a machine may say to be, mm: the tenth of a millimetre by which paths are usually
+/// rounded, and four steps of the documented machine.
 const ON_WAY_MM: f64 = 0.15;
-/// How far a corner is rounded at most, mm: beyond it the machine is elsewhere.
+/// How far a corner is rounded at most, mm, twenty times as much as is usual: beyond it the machine is
+/// elsewhere.
 const NEAR_WAY_MM: f64 = 2.0;
 
 /// A straight move that is not made yet.

@@ -12,8 +12,8 @@
 //! The reliable link says the same in frames; there the pen is known, and nothing is lost that one side has
 //! not noticed.
 //!
-//! Grbl's and mDraw's lines are text: they are drawn as what they say, as far as the machine has taken them and
-//! says to be.
+//! Grbl's and mDraw's lines are text: they are drawn as what they say, as far as the machine has taken them
+//! and says to be.
 //!
 //! Two tracks are kept: *as counted*, and *resynchronized*, which starts afresh at each reached target. A
 //! lost pulse shifts the first for ever and the second until the next `+`.

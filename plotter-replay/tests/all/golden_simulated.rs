@@ -1,5 +1,5 @@
-//! A simulated machine of each dialect has a golden log: with the same bytes from its host at the same times it
-//! does the same again, motors, switches and lost steps among it; and its controller does so on the log.
+//! A simulated machine of each dialect has a golden log: with the same bytes from its host at the same times
+//! it does the same again, motors, switches and lost steps among it; and its controller does so on the log.
 //!
 //! ```text
 //! UPDATE_GOLDEN=1 cargo test -p plotter-replay --features cli,live --test all golden_simulated::

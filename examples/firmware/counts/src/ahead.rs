@@ -1,6 +1,6 @@
 //! The stepper plotter's controller in two halves on a processor of 100 MHz: what planning takes is how long
-//! it takes, and of every tenth of a second the main loop is away for 20 ms. Or on that of an RP2040, which has
-//! no unit for numbers with a point.
+//! it takes, and of every tenth of a second the main loop is away for 20 ms. Or on that of an RP2040, which
+//! has no unit for numbers with a point.
 
 use crate::counter::{Counter, Tally};
 use core::fmt::Write as _;

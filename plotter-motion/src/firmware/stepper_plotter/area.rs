@@ -8,7 +8,7 @@ use core::f32::consts::FRAC_PI_2;
 
 /// What rounding may put outside, mm, and as a share of the area's side: together the micrometre in which
 /// coordinates are told at two metres, and 17 of them at 65 m, the longest side.
-const SLACK_MM: f32 = 5e-4;
+pub(super) const SLACK_MM: f32 = 5e-4;
 const SLACK_SHARE: f32 = 2.5e-7;
 
 /// Whether the way of `op` from `from` stays between (0, 0) and `most`, mm. An arc may go farther than its

@@ -131,8 +131,8 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
         self.work(now);
     }
 
-    /// How many steps farther than the first the second motor of an axis went when both were made square last:
-    /// by how much the gantry was racked.
+    /// How many steps farther than the first the second motor of an axis went when both were made square
+    /// last: by how much the gantry was racked.
     #[cfg(feature = "third-motor")]
     #[must_use]
     pub fn skew_steps(&self) -> Option<i32> {

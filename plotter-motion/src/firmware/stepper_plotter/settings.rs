@@ -179,8 +179,8 @@ impl Default for StepperPlotterSettings {
     }
 }
 
-/// [`StepperPlotterSettings`] with the fields of a machine with two axes, and none of a third motor, whether these
-/// are built in or not: for constants that a build script writes.
+/// [`StepperPlotterSettings`] with the fields of a machine with two axes, and none of a third motor, whether
+/// these are built in or not: for constants that a build script writes.
 #[cfg(feature = "third-motor")]
 #[doc(hidden)]
 #[macro_export]

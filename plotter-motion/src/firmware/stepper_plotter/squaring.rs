@@ -11,15 +11,15 @@ use crate::decimal_text::{Plain, Whole};
 use crate::safety::EndSwitches;
 use core::fmt;
 
-/// A second motor of an axis: of a gantry that one alone would rack. It makes every step of the first, and has
-/// limit switches of its own.
+/// A second motor of an axis: of a gantry that one alone would rack. It makes every step of the first, and
+/// has limit switches of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct SecondMotor {
     /// Of which axis.
     pub axis: Axis,
-    /// By how many steps the second motor leaves its lower switch farther than the first, so that the gantry is
-    /// square: what the switches are out of square. Below 0 it is the first that does.
+    /// By how many steps the second motor leaves its lower switch farther than the first, so that the gantry
+    /// is square: what the switches are out of square. Below 0 it is the first that does.
     pub offset_steps: i32,
     /// How many steps one motor may go on alone; with more something else is wrong, and nothing is bent
     /// farther.

@@ -61,7 +61,8 @@ pub struct Status {
     /// Which limit switches of the second motor of an axis are pressed.
     #[cfg(feature = "third-motor")]
     pub second_switches: crate::safety::EndSwitches,
-    /// How many steps farther than the first the second motor of an axis went when both were made square last.
+    /// How many steps farther than the first the second motor of an axis went when both were made square
+    /// last.
     #[cfg(feature = "third-motor")]
     pub skew_steps: Option<i32>,
     /// How fast it moves, mm/s.

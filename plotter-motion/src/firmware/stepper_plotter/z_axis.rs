@@ -11,8 +11,8 @@ const MOST_MM: f64 = 65_535.0;
 /// Least travel, mm.
 const LEAST_MM: f64 = 0.01;
 
-/// A third axis: a tool that is raised and lowered by a motor of its own. Its heights go from 0, the lowest, to
-/// [`ZAxis::travel_mm`]. A machine that is switched on stands at 0, unless it homes.
+/// A third axis: a tool that is raised and lowered by a motor of its own. Its heights go from 0, the lowest,
+/// to [`ZAxis::travel_mm`]. A machine that is switched on stands at 0, unless it homes.
 ///
 /// The default has a spindle of 8 mm a turn with 3200 steps, 30 mm high, without a switch.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use super::super::interpreter::{LineInterpreter, Outcomes};
 use super::super::nurbs::{LEAST_ORDER, MOST_ORDER, Nurbs};
 use super::super::stretched_arc::StretchedArc;
 use super::super::{Block, Error, Modes, Problem, ReadOptions};
-use super::words::{carry_out_rest, has, place, unit_mm, without_movement};
+use super::words::{carry_out_rest, has, place, without_movement};
 use super::{Expansion, Motion, Pending};
 use crate::bezier::Bezier;
 use crate::{PlotOp, Point, Vec2};
@@ -14,7 +14,7 @@ const TOLERANCE_MM: f64 = 0.01;
 
 impl Expansion {
     pub(super) fn begin_curve(&mut self, block: &Block, is_cubic: bool, modes: &Modes) -> Result<(), Error> {
-        let unit_mm = unit_mm(modes);
+        let unit_mm = modes.unit_mm();
         let way = |x, y| Some(Vec2::new(block.number(x)?, block.number(y)?) * unit_mm);
         let (from, to) = (modes.position, place(block, modes, [b'X', b'Y']));
         let missing = |expected| Error { at: block.position(), problem: Problem::Missing { expected } };

@@ -16,7 +16,7 @@ use crate::bezier::Bezier;
 use crate::{PlotOp, Point, Vec2};
 use words::{
     carry_out_rest, has, height_unit, is_factor, is_motion, moves_along_z, place, scaling, takes_places,
-    unit_mm, without_movement,
+    without_movement,
 };
 
 /// Farthest place of the pen in the coordinates of a scaled drawing, mm: a thousand times what a number can
@@ -328,7 +328,7 @@ impl Expansion {
         }
         carry_out_rest(&block, line, options, out)?;
         let modes = line.modes();
-        let unit_mm = unit_mm(&modes);
+        let unit_mm = modes.unit_mm();
         if asked.restores {
             line.set_shift(self.saved);
         }
@@ -443,8 +443,8 @@ impl Expansion {
                 let from = if modes.relative { modes.position - Point::ORIGIN } else { modes.offset };
                 block.retain(|_| false);
                 block.insert(b'G', 1.0);
-                block.set(b'X', (to.x - from.x) / unit_mm(&modes));
-                block.set(b'Y', (to.y - from.y) / unit_mm(&modes));
+                block.set(b'X', (to.x - from.x) / modes.unit_mm());
+                block.set(b'Y', (to.y - from.y) / modes.unit_mm());
             }
             Pending::Turns { rest } => {
                 // The first part of the line has done what is no movement.

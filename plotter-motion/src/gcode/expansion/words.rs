@@ -5,8 +5,6 @@ use super::super::{Block, Error, Modes, PenConvention, Problem, ReadOptions, Ser
 use super::PLACES;
 use crate::Point;
 
-const MM_PER_INCH: f64 = 25.4;
-
 /// A line without what belongs to its movement.
 pub(super) fn without_movement(block: &Block) -> Block {
     let mut rest = *block;
@@ -90,19 +88,15 @@ pub(super) fn moves_along_z(pen: PenConvention) -> bool {
     matches!(pen, PenConvention::Height { .. } | PenConvention::Servo { command: ServoCommand::Z, .. })
 }
 
-pub(super) fn unit_mm(modes: &Modes) -> f64 {
-    if modes.inches { MM_PER_INCH } else { 1.0 }
-}
-
 pub(super) fn height_unit(modes: &Modes, options: &ReadOptions) -> f64 {
-    if let PenConvention::Height { .. } = options.pen { unit_mm(modes) } else { 1.0 }
+    if let PenConvention::Height { .. } = options.pen { modes.unit_mm() } else { 1.0 }
 }
 
 /// The place that two letters name; it is that of the pen where they are not there.
 pub(super) fn place(block: &Block, modes: &Modes, [x, y]: [u8; 2]) -> Point {
     let origin = if modes.relative { modes.position } else { Point::ORIGIN + modes.offset };
     let along = |letter, origin: f64, at: f64| {
-        block.number(letter).map_or(at, |number| origin + number * unit_mm(modes))
+        block.number(letter).map_or(at, |number| origin + number * modes.unit_mm())
     };
     Point::new(along(x, origin.x, modes.position.x), along(y, origin.y, modes.position.y))
 }

@@ -7,13 +7,13 @@ use super::code::{Code, Group};
 use super::error::Complaint;
 use super::interpreter::Outcomes;
 use super::line::Line;
+use super::modes::MM_PER_INCH;
 use super::pen_convention::{LaserCommand, PenConvention, ServoCommand};
 use super::{DwellUnit, Modes, Problem, ReadOptions, Remark, SYSTEMS, Word, Words};
 use crate::seconds::duration;
 use crate::whole::{is_whole, whole};
 use crate::{PlotOp, Point, Vec2};
 
-const MM_PER_INCH: f64 = 25.4;
 /// The number after `G` of the first coordinate system.
 const G54: u8 = 54;
 /// The number after `G` of the plane of the sheet, and of the one along x; the third is that along y.

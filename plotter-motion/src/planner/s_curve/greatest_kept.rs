@@ -1,4 +1,5 @@
-//! [`GreatestKept`]: the search for the greatest number that still keeps what has to be kept, a look at a time.
+//! [`GreatestKept`]: the search for the greatest number that still keeps what has to be kept, a look at a
+//! time.
 
 use crate::geom::single;
 

@@ -294,7 +294,8 @@ impl SCurveState {
         phase
     }
 
-    /// Chooses the next phase or phases, at least one; or begins a search for one, with so many looks at most.
+    /// Chooses the next phase or phases, at least one; or begins a search for one, with so many looks at
+    /// most.
     #[cfg_attr(target_os = "none", inline(never))] // most of what a planner is asked for are ramps
     fn choose<const N: usize>(&mut self, looks: u32, ring: &Ring<N>, rest_mm: f64, limits: Limits) -> Chosen {
         let mut ahead = Ahead::new(ring, rest_mm, limits);

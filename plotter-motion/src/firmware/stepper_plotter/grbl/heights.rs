@@ -3,14 +3,11 @@
 use crate::gcode::{Block, Modes, SYSTEMS};
 use crate::planner::Keep as _;
 
+use super::super::area::SLACK_MM;
 use super::super::{Command, Link, Status, StepperPlotterSettings, ZAxis};
 use super::codes::Code;
 use super::{Grbl, Pens};
 use crate::PlotOp;
-
-const MM_PER_INCH: f64 = 25.4;
-/// What rounding may put outside of the travel, mm: as of the area.
-const SLACK_MM: f64 = 5e-4;
 
 /// Where the third axis is to be, and the origins that it is told from. What is kept of a text's x and y, the
 /// interpreter keeps.
@@ -46,7 +43,8 @@ impl Targets {
     }
 
     fn within(&self, z: &ZAxis) -> bool {
-        let fits = |mm: Option<f64>| mm.is_none_or(|mm| (-SLACK_MM..=z.travel_mm + SLACK_MM).contains(&mm));
+        let slack_mm = f64::from(SLACK_MM);
+        let fits = |mm: Option<f64>| mm.is_none_or(|mm| (-slack_mm..=z.travel_mm + slack_mm).contains(&mm));
         fits(self.first_mm) && fits(self.home_mm)
     }
 
@@ -110,7 +108,7 @@ impl Heights {
     }
 
     fn target(&self, block: &Block, modes: &Modes) -> Option<f64> {
-        let way = block.number(b'Z')? * unit_mm(modes);
+        let way = block.number(b'Z')? * modes.unit_mm();
         Some(if asks(block, 530) {
             way
         } else if modes.relative {
@@ -122,7 +120,7 @@ impl Heights {
 
     /// Carries out what a line says of z; `modes` hold with it.
     pub(super) fn carry_out(&mut self, block: &Block, modes: &Modes) -> Targets {
-        let z = block.number(b'Z').map(|z| z * unit_mm(modes));
+        let z = block.number(b'Z').map(|z| z * modes.unit_mm());
         let mut targets = Targets::default();
         if asks(block, 100) {
             let system = match block.number(b'P') {
@@ -166,10 +164,6 @@ pub(super) fn told(settings: &StepperPlotterSettings) -> Option<ZAxis> {
 
 fn asks(block: &Block, tenths: u16) -> bool {
     block.words().iter().any(|word| word.letter == b'G' && word.tenths() == Some(tenths))
-}
-
-fn unit_mm(modes: &Modes) -> f64 {
-    if modes.inches { MM_PER_INCH } else { 1.0 }
 }
 
 impl<P: Pens> Grbl<P> {

@@ -87,397 +87,19 @@
 //! The block between every controller and the motors is the collision prevention of the marking board.
 //! Source: Khan and McGinn, "2D Controlled Marking Board", section 0.3.
 
+mod duty;
+mod passed;
+mod switches;
+
+pub use duty::{Demand, Duty, DutyError};
+pub use passed::{Beam, Drive, Pulse};
+#[cfg(feature = "third-motor")]
+pub use switches::EndSwitches;
+pub use switches::{Blocked, LimitSwitches};
+
 use crate::kinematics::BeltSigns;
 use crate::{Axis, Direction, StepPair};
-use core::fmt;
-use core::marker::PhantomData;
-
-/// Share of the supply on a motor, with the sign of the direction: -1.0 to 1.0, checked once when made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Duty(f32);
-
-/// A duty outside -1.0 to 1.0, or not a number.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct DutyError {
-    /// The value refused.
-    pub value: f32,
-}
-
-impl fmt::Display for DutyError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "duty {} lies outside -1.0..=1.0", self.value)
-    }
-}
-
-impl core::error::Error for DutyError {}
-
-impl Duty {
-    /// No voltage.
-    pub const ZERO: Self = Self(0.0);
-    /// The whole supply, forwards.
-    pub const FULL: Self = Self(1.0);
-
-    /// Checks a duty.
-    ///
-    /// # Errors
-    ///
-    /// [`DutyError`] for a value outside -1.0 to 1.0 and for NaN.
-    pub fn new(value: f32) -> Result<Self, DutyError> {
-        if (-1.0..=1.0).contains(&value) { Ok(Self(value)) } else { Err(DutyError { value }) }
-    }
-
-    /// The nearest duty there is; NaN gives none at all.
-    ///
-    /// ```
-    /// # use plotter_motion::Duty;
-    /// assert_eq!(Duty::saturating(3.0), Duty::FULL);
-    /// assert_eq!(Duty::saturating(f32::NAN), Duty::ZERO);
-    /// ```
-    #[must_use]
-    pub fn saturating(value: f32) -> Self {
-        if value.is_nan() { Self::ZERO } else { Self(value.clamp(-1.0, 1.0)) }
-    }
-
-    /// The number, -1.0 to 1.0.
-    #[must_use]
-    pub const fn value(self) -> f32 {
-        self.0
-    }
-
-    /// What a timer with `pwm_steps` steps (at most 65535) makes of it: rounded to nearest, with sign.
-    ///
-    /// ```
-    /// # use plotter_motion::Duty;
-    /// assert_eq!(Duty::saturating(20.0 / 255.0).steps(255), 20);
-    /// assert_eq!(Duty::saturating(-1.0).steps(255), -255);
-    /// ```
-    #[must_use]
-    pub fn steps(self, pwm_steps: u16) -> i32 {
-        #[expect(clippy::cast_possible_truncation, reason = "at most 65535 in size")]
-        let steps = libm::roundf(self.0 * f32::from(pwm_steps)) as i32;
-        steps
-    }
-
-    /// The direction, if there is any voltage at all.
-    #[must_use]
-    pub fn direction(self) -> Option<Direction> {
-        if self.0 > 0.0 {
-            Some(Direction::Plus)
-        } else if self.0 < 0.0 {
-            Some(Direction::Minus)
-        } else {
-            None
-        }
-    }
-}
-
-/// What a controller asks of both motors.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Demand {
-    /// First motor.
-    pub x: Duty,
-    /// Second motor.
-    pub y: Duty,
-}
-
-impl Demand {
-    /// Nothing.
-    pub const NONE: Self = Self { x: Duty::ZERO, y: Duty::ZERO };
-}
-
-/// What both motors get: made by [`SafetyGate::pass`] only. It ends when its gate is told anything; the
-/// default is none at all.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Drive<'gate> {
-    x: Duty,
-    y: Duty,
-    gate: PhantomData<&'gate SafetyGate>,
-}
-
-impl Drive<'_> {
-    /// The duty of the first motor.
-    #[must_use]
-    pub const fn x(self) -> Duty {
-        self.x
-    }
-
-    /// The duty of the second motor.
-    #[must_use]
-    pub const fn y(self) -> Duty {
-        self.y
-    }
-
-    /// The duty of the motor of `axis`.
-    #[must_use]
-    pub const fn axis(self, axis: Axis) -> Duty {
-        match axis {
-            Axis::X => self.x,
-            Axis::Y => self.y,
-        }
-    }
-
-    /// Those of both motors.
-    #[must_use]
-    pub const fn duties(self) -> [Duty; 2] {
-        [self.x, self.y]
-    }
-
-    /// The same without its end: for a controller that keeps its gate in the same place, and passes the
-    /// demand again whenever it tells the gate anything. It lends the drive no longer than itself.
-    pub(crate) const fn kept(self) -> Drive<'static> {
-        drive(self.x, self.y)
-    }
-}
-
-const fn drive(x: Duty, y: Duty) -> Drive<'static> {
-    Drive { x, y, gate: PhantomData }
-}
-
-/// A step of either motor or of both that may be made: by [`SafetyGate::pass_step`] only. It ends when its
-/// gate is told anything.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Pulse<'gate> {
-    x: i8,
-    y: i8,
-    #[cfg(feature = "third-motor")]
-    z: i8,
-    /// What the second motor of an axis makes, where that is not what the first makes.
-    #[cfg(feature = "third-motor")]
-    apart: Option<i8>,
-    gate: PhantomData<&'gate SafetyGate>,
-}
-
-impl Pulse<'_> {
-    /// The step of the first motor: -1, 0 or 1.
-    #[must_use]
-    pub const fn x(self) -> i8 {
-        self.x
-    }
-
-    /// The step of the second motor: -1, 0 or 1.
-    #[must_use]
-    pub const fn y(self) -> i8 {
-        self.y
-    }
-
-    /// The step of a third motor: -1, 0 or 1. It comes alone.
-    #[cfg(feature = "third-motor")]
-    #[must_use]
-    pub const fn z(self) -> i8 {
-        self.z
-    }
-
-    /// The step of the second motor of an axis that has two: that of the first, but where both are made
-    /// square.
-    #[cfg(feature = "third-motor")]
-    #[must_use]
-    pub const fn second(self, axis: Axis) -> i8 {
-        match (self.apart, axis) {
-            (Some(step), _) => step,
-            (None, Axis::X) => self.x,
-            (None, Axis::Y) => self.y,
-        }
-    }
-
-    /// The share of a third axis, as the driver of an axis takes it.
-    #[cfg(feature = "third-motor")]
-    #[must_use]
-    pub const fn of_z(self, axis: Axis) -> Self {
-        self.alone(axis, self.z)
-    }
-
-    /// The share of the second motor of an axis, as the driver of that axis takes it.
-    #[cfg(feature = "third-motor")]
-    #[must_use]
-    pub const fn of_second(self, axis: Axis) -> Self {
-        self.alone(axis, self.second(axis))
-    }
-
-    #[cfg(feature = "third-motor")]
-    const fn alone(self, axis: Axis, step: i8) -> Self {
-        let (x, y) = match axis {
-            Axis::X => (step, 0),
-            Axis::Y => (0, step),
-        };
-        Self { x, y, z: 0, apart: None, gate: self.gate }
-    }
-
-    /// As [`Drive::kept`].
-    pub(crate) const fn kept(self) -> Pulse<'static> {
-        Pulse {
-            x: self.x,
-            y: self.y,
-            #[cfg(feature = "third-motor")]
-            z: self.z,
-            #[cfg(feature = "third-motor")]
-            apart: self.apart,
-            gate: PhantomData,
-        }
-    }
-}
-
-impl From<Pulse<'_>> for StepPair {
-    fn from(pulse: Pulse<'_>) -> Self {
-        Self { x: pulse.x, y: pulse.y }
-    }
-}
-
-const fn pulse(step: StepPair) -> Pulse<'static> {
-    Pulse {
-        x: step.x,
-        y: step.y,
-        #[cfg(feature = "third-motor")]
-        z: 0,
-        #[cfg(feature = "third-motor")]
-        apart: None,
-        gate: PhantomData,
-    }
-}
-
-/// Power of a laser, in 65535ths, that may be switched on: by [`SafetyGate::pass_laser`] only. It ends when
-/// its gate is told anything; the default is off.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Beam<'gate> {
-    power: u16,
-    gate: PhantomData<&'gate SafetyGate>,
-}
-
-impl Beam<'_> {
-    /// No power.
-    pub const OFF: Self = Self { power: 0, gate: PhantomData };
-
-    /// The power, in 65535ths.
-    #[must_use]
-    pub const fn power(self) -> u16 {
-        self.power
-    }
-
-    /// As [`Drive::kept`].
-    pub(crate) const fn kept(self) -> Beam<'static> {
-        Beam { power: self.power, gate: PhantomData }
-    }
-}
-
-/// Why a step may not be made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum Blocked {
-    /// The emergency stop is latched, or the host has stopped the machine.
-    Stopped,
-    /// It leads into a pressed limit switch.
-    Limit {
-        /// Of which axis.
-        axis: Axis,
-        /// At which of its ends.
-        end: Direction,
-    },
-    /// A step of a third motor leads into a pressed limit switch of its axis.
-    #[cfg(feature = "third-motor")]
-    LimitZ {
-        /// At which of its ends.
-        end: Direction,
-    },
-}
-
-impl fmt::Display for Blocked {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (axis, end) = match self {
-            #[cfg(feature = "third-motor")]
-            Self::LimitZ { end } => ("z", end),
-            Self::Stopped => return f.write_str("the machine is stopped: reset the emergency stop first"),
-            Self::Limit { axis: Axis::X, end } => ("x", end),
-            Self::Limit { axis: Axis::Y, end } => ("y", end),
-        };
-        let end = if *end == Direction::Plus { "upper" } else { "lower" };
-        write!(f, "the limit switch at the {end} end of {axis} is pressed: step the other way")
-    }
-}
-
-impl core::error::Error for Blocked {}
-
-/// Which limit switches are pressed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct LimitSwitches {
-    /// At the left end.
-    pub x_min: bool,
-    /// At the right end.
-    pub x_max: bool,
-    /// At the lower end.
-    pub y_min: bool,
-    /// At the upper end.
-    pub y_max: bool,
-}
-
-impl LimitSwitches {
-    /// None of them is pressed; also what a machine says that has none.
-    pub const RELEASED: Self = Self { x_min: false, x_max: false, y_min: false, y_max: false };
-
-    /// Whether the switch at the end that `direction` leads to is pressed.
-    #[must_use]
-    #[cfg_attr(target_os = "none", inline(never))]
-    pub const fn blocks(self, axis: Axis, direction: Direction) -> bool {
-        self.blocks_inline(axis, direction)
-    }
-
-    /// The same where it has to be quick: for every step and every edge of an encoder.
-    #[inline(always)]
-    const fn blocks_inline(self, axis: Axis, direction: Direction) -> bool {
-        match (axis, direction) {
-            (Axis::X, Direction::Plus) => self.x_max,
-            (Axis::X, Direction::Minus) => self.x_min,
-            (Axis::Y, Direction::Plus) => self.y_max,
-            (Axis::Y, Direction::Minus) => self.y_min,
-        }
-    }
-
-    /// Whether any switch is pressed.
-    #[must_use]
-    pub const fn any(&self) -> bool {
-        self.x_min | self.x_max | self.y_min | self.y_max
-    }
-
-    /// Notes one switch.
-    pub const fn set(&mut self, axis: Axis, end: Direction, pressed: bool) {
-        match (axis, end) {
-            (Axis::X, Direction::Plus) => self.x_max = pressed,
-            (Axis::X, Direction::Minus) => self.x_min = pressed,
-            (Axis::Y, Direction::Plus) => self.y_max = pressed,
-            (Axis::Y, Direction::Minus) => self.y_min = pressed,
-        }
-    }
-}
-
-/// Which limit switches of a third axis, or of the second motor of an axis, are pressed. Of those that a machine
-/// does not have, none is.
-#[cfg(feature = "third-motor")]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct EndSwitches {
-    /// At the lower end.
-    pub lower: bool,
-    /// At the upper end.
-    pub upper: bool,
-}
-
-#[cfg(feature = "third-motor")]
-impl EndSwitches {
-    /// What is left of a step.
-    const fn lets(self, step: i8) -> i8 {
-        match step.signum() {
-            1 if self.upper => 0,
-            -1 if self.lower => 0,
-            sign => sign,
-        }
-    }
-}
+use passed::{beam, drive, pulse};
 
 /// The only way from a [`Demand`] to a [`Drive`].
 ///
@@ -648,7 +270,7 @@ impl SafetyGate {
     #[must_use]
     pub fn pass_belt(&self, demand: Demand, signs: BeltSigns, unequal_share: f32) -> Drive<'_> {
         let axes = self.pass(demand);
-        let (x, y) = (axes.x.value(), axes.y.value());
+        let (x, y) = (axes.x().value(), axes.y().value());
         let size = (x.abs() + y.abs()).max(1.0);
         let mut motors = signs.motors(x / size, y / size);
         let share = if unequal_share.is_nan() { 1.0 } else { unequal_share.clamp(0.0, 1.0) };
@@ -770,7 +392,7 @@ impl SafetyGate {
             Axis::X => StepPair { x: free, y: 0 },
             Axis::Y => StepPair { x: 0, y: free },
         };
-        Ok(Pulse { apart: Some(free_second), ..pulse(step) })
+        Ok(pulse(step).with_second(free_second))
     }
 
     /// Notes the limit switches of a third axis; until then none of them is pressed.
@@ -811,13 +433,13 @@ impl SafetyGate {
         if step < 0 && self.z.lower {
             return Err(Blocked::LimitZ { end: Direction::Minus });
         }
-        Ok(Pulse { z: step.signum(), ..pulse(StepPair { x: 0, y: 0 }) })
+        Ok(pulse(StepPair { x: 0, y: 0 }).with_z(step.signum()))
     }
 
     /// Lets the power of a laser through, unless the machine is stopped.
     #[must_use]
     pub const fn pass_laser(&self, power: u16) -> Beam<'_> {
-        if self.stopped { Beam::OFF } else { Beam { power, gate: PhantomData } }
+        if self.stopped { Beam::OFF } else { beam(power) }
     }
 
     fn pass_axis(&self, axis: Axis, duty: Duty) -> Duty {
