@@ -130,7 +130,7 @@ fn pauses_on_a_grbl_machine_lift_the_pen_at_once_and_cost_no_ink() {
 #[test]
 fn a_pause_is_there_within_the_braking_and_not_behind_the_queue() {
     let far = |n: u32| PlotOp::Draw {
-        to: Point::new(if n % 2 == 0 { 1.0 } else { 59.0 }, f64::from(n)),
+        to: Point::new(if n.is_multiple_of(2) { 1.0 } else { 59.0 }, f64::from(n)),
         feed_mm_s: Some(5.0),
     };
     let mut desk = Desk::new(grbl((0..12).map(far).collect()), &machine(), Spoken::Grbl, "");
@@ -310,4 +310,29 @@ fn a_jog_by_hand_moves_and_a_pen_is_lifted_and_lowered() {
         Axis::Y => (x, y + sign),
     });
     assert!(x > 1_000 && y > 400, "{x} {y}");
+}
+
+#[test]
+fn the_time_that_is_left_is_right_within_two_hundredths_behind_a_twentieth() {
+    use plotter_replay::live::Timetable;
+    let machine = machine();
+    let mut table = Timetable::new(&machine).unwrap();
+    drawing().into_iter().for_each(|op| table.push(op));
+    let total = table.finish();
+    let mut desk = Desk::new(grbl(drawing()), &machine, Spoken::Grbl, "");
+    desk.until(&[HostState::Ready], LONG);
+    desk.ask(Request::GoOn);
+    let began = desk.now();
+    let mut told = Vec::new();
+    while desk.host.status().state != HostState::Done {
+        desk.round();
+        let drawn = desk.now() - began;
+        told.push((drawn, table.rest(desk.host.status().done, drawn)));
+    }
+    let whole = desk.now() - began;
+    let behind = told.iter().filter(|(drawn, _)| drawn.as_secs_f64() > 0.05 * whole.as_secs_f64());
+    let off = behind.map(|(drawn, rest)| (whole.as_secs_f64() - (*drawn + *rest).as_secs_f64()).abs());
+    let worst = off.fold(0.0, f64::max);
+    println!("{total:?} planned, {whole:?} drawn, the time left off by {worst:.3} s at most");
+    assert!(worst < 0.02 * whole.as_secs_f64(), "{worst} of {whole:?}, planned {total:?}");
 }
