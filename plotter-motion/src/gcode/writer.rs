@@ -188,6 +188,15 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
         Ok(())
     }
 
+    /// Lifts the pen where it is, if it is not lifted; the operations that come next lower it as they need it.
+    ///
+    /// # Errors
+    ///
+    /// As [`Writer::finish`].
+    pub fn lift(&mut self) -> Result<(), WriteError> {
+        self.put(Pen::Up)
+    }
+
     /// What has been written so far: a host that sends lines as they come takes them out of here.
     pub fn out_mut(&mut self) -> &mut W {
         &mut self.out

@@ -116,7 +116,14 @@ impl<'a, W: Write> HostedEngine<'a, W> {
             bytes.iter().for_each(|&byte| self.host.receive(now, byte));
         }
         self.look();
-        Ok((self.host.status().state == HostState::Done).then_some(State::Done))
+        if self.host.status().state != HostState::Done {
+            return Ok(None);
+        }
+        let now = self.now();
+        while let Some(notice) = self.host.poll(now) {
+            self.notice(now, notice); // what it noticed of the end
+        }
+        Ok(Some(State::Done))
     }
 
     fn send(&mut self, now: Duration) -> Result<(), PortError> {

@@ -76,6 +76,7 @@ fn draw(spoken: Spoken, seed: u64, damaged: Option<u64>) -> (BTreeSet<(i32, i32)
     let end = Duration::from_secs(180);
     let mut is_wrong = false;
     let mut is_begun = false;
+    let mut is_over = false;
     while desk.now() < end {
         desk.round();
         let state = desk.host.status().state;
@@ -83,14 +84,16 @@ fn draw(spoken: Spoken, seed: u64, damaged: Option<u64>) -> (BTreeSet<(i32, i32)
             !matches!(notice, MachineNotice::State(_) | MachineNotice::Greeted | MachineNotice::Garbled)
         });
         desk.notices.clear();
+        if is_over {
+            break; // what it noticed of the end is told
+        }
         match state {
             HostState::Ready if !is_begun => {
                 desk.ask(Request::GoOn);
                 is_begun = true;
             }
-            HostState::Done => break,
             // What it stops at, it says.
-            HostState::Paused | HostState::Stopped | HostState::Locked(_) => break,
+            HostState::Done | HostState::Paused | HostState::Stopped | HostState::Locked(_) => is_over = true,
             _ => {}
         }
     }

@@ -46,8 +46,10 @@ fn what_cannot_be_driven_is_said_in_a_line_with_status_2() {
         (&["far.hpgl"], "nothing in it that this machine could draw"),
         (&["line.hpgl", "--simulate", "nowhere.toml"], "nowhere.toml: cannot be read"),
         (&["line.hpgl", "--simulate", "line.hpgl"], "line.hpgl:"),
-        (&["line.hpgl", "--simulate", "stepper.toml"], "stepper.toml: this machine has stepper motors"),
-        (&["line.hpgl", "--simulate", "stepper.toml"], "drive = \"dc\""),
+        (
+            &["far.hpgl", "--simulate", "stepper.toml"],
+            "and the machine from (0, 0) to (100, 100) mm: move or scale it",
+        ),
         (&["line.hpgl", "--simulate", "belt.toml"], "belt.toml: this machine has DC motors on one belt"),
         (&["line.hpgl", "--simulate", "belt.toml"], "kinematics.type = \"cartesian\""),
         (&["line.hpgl", "--port", "/dev/no-such-plotter", "--machine", "belt.toml"], "on one belt"),

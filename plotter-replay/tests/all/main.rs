@@ -32,6 +32,8 @@ mod lines_in_logs;
 mod linked_session;
 #[cfg(all(feature = "cli", feature = "live"))]
 mod live_command;
+#[cfg(all(feature = "cli", feature = "live"))]
+mod live_lines;
 #[cfg(feature = "live")]
 mod live_session;
 mod log_commands;

@@ -124,6 +124,13 @@ impl Language for Grbl<'_> {
         written
     }
 
+    fn lift(&mut self, _: Point, out: &mut OpText) -> Result<(), WriteError> {
+        self.writer.out_mut().clear();
+        let written = self.writer.lift();
+        out.clone_from(self.writer.out_mut());
+        written
+    }
+
     fn jog(&mut self, _: Point, by: Vec2, feed_mm_s: f64, out: &mut OpText) -> bool {
         writeln!(out, "$J=G91 G21 X{:.3} Y{:.3} F{:.0}", by.x, by.y, (60.0 * feed_mm_s).max(1.0)).is_ok()
     }

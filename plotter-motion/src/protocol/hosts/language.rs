@@ -88,6 +88,16 @@ pub trait Language {
     /// [`WriteError`]: it cannot be said, and nothing was.
     fn write(&mut self, op: PlotOp, out: &mut OpText) -> Result<(), WriteError>;
 
+    /// Lifts the pen at this place, where it stands. A language that can say so without a place does: a place
+    /// that came wrong before is seen at the rest behind it, not put right with the pen lifted.
+    ///
+    /// # Errors
+    ///
+    /// As [`write`](Self::write).
+    fn lift(&mut self, at: Point, out: &mut OpText) -> Result<(), WriteError> {
+        self.write(PlotOp::Travel { to: at }, out)
+    }
+
     /// A movement by hand, in lines; whether there is a word for it.
     fn jog(&mut self, at: Point, by: Vec2, feed_mm_s: f64, out: &mut OpText) -> bool;
 

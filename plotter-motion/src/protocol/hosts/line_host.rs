@@ -16,6 +16,8 @@ const MOST_NOTICES: usize = 16;
 const MOST_URGENT: usize = 32;
 /// Free lines before an operation is written: two of an arc, three to lower the pen, and the beginning's four.
 const ROOM_FOR_OP: usize = 12;
+/// How often a machine is asked where it rests, where its answer comes wrong.
+const MOST_ASKS: u8 = 5;
 /// So many reports of a machine that waits, one after the other, say that it has taken all that it will.
 const RESTS_FOR_LOST: u8 = 4;
 
@@ -29,7 +31,7 @@ pub struct LineHostSettings {
     /// Silence after which it says so, 5 s by default.
     pub silence: Duration,
     /// How far from where it was led a machine may say to rest, mm on each axis: 0.06 by default, four steps
-    /// of a usual plotter and more than a last decimal.
+    /// of a usual plotter and more than a last decimal; two steps at most of one that tells how long they are.
     pub rest_within_mm: f64,
 }
 
@@ -105,7 +107,7 @@ struct Earlier {
 /// host.ask(now, Request::GoOn)?;
 /// host.poll(now);
 /// let sent: Vec<u8> = core::iter::from_fn(|| host.next_byte(now)).collect();
-/// assert_eq!(String::from_utf8_lossy(&sent), "?$$\nG21\nG90\nM5\nG0 X0 Y0\nM3 S90\nG1 X10 Y0 F1200\nM5\nG0 X10 Y0\nG4 P0\n");
+/// assert_eq!(String::from_utf8_lossy(&sent), "?$$\nG21\nG90\nM5\nG0 X0 Y0\nM3 S90\nG1 X10 Y0 F1200\nM5\nG4 P0\n");
 /// # Ok::<(), plotter_motion::protocol::hosts::NotNow>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -132,6 +134,9 @@ pub struct LineHost<L, I> {
     at: Option<Point>,
     /// Whether the machine's place is that of the drawing.
     knows_place: bool,
+    /// How often the machine was asked at this rest where it stands, and whether it has said so.
+    asks: u8,
+    is_told: bool,
     /// Whether it moves by hand: GRBL refuses all but further such movements until it stands.
     jogs: bool,
     /// Whether what was sent is forgotten, and the place where it ended not told yet.
@@ -173,6 +178,8 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             told: HostState::Unheard,
             at: None,
             knows_place: true,
+            asks: 0,
+            is_told: false,
             jogs: false,
             is_interrupted: false,
             pen: Pen::Up,
@@ -325,10 +332,11 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
         let here = self.at.filter(|_| self.is_interrupted).unwrap_or_else(|| self.trail.sent_end());
         let mut text = OpText::default();
         let mut lift = OpText::default();
-        let lifted = self.language.write(PlotOp::Travel { to: here }, &mut lift).is_ok();
+        let lifted = self.language.lift(here, &mut lift).is_ok();
         self.language.rest(&mut text);
         let room = lifted && self.push(&lift, Purpose::ByHand);
         if room && self.push(&text, Purpose::Rest) {
+            (self.asks, self.is_told) = (1, false);
             self.pen = Pen::Up;
             self.phase = Phase::Ending(then, false);
         }
@@ -340,7 +348,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
         self.trail.finish_sent();
         if let Some(told) = at {
             let off = told - wanted;
-            if off.x.abs().max(off.y.abs()) > self.settings.rest_within_mm {
+            if off.x.abs().max(off.y.abs()) > self.rest_within_mm() {
                 self.notice(MachineNotice::Elsewhere { wanted, told });
             }
         }
@@ -350,6 +358,15 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             Then::Sheet => Phase::SheetWanted,
             Then::Done => Phase::Done,
         };
+    }
+
+    /// How far from where it was led the machine may say to rest: two steps, where it tells how long they are.
+    fn rest_within_mm(&self) -> f64 {
+        let [x, y] = self.language.limits().steps_per_mm;
+        match (x, y) {
+            (Some(x), Some(y)) => (2.0 / x.min(y)).min(self.settings.rest_within_mm),
+            _ => self.settings.rest_within_mm,
+        }
     }
 
     /// The machine has forgotten all that it was sent.
@@ -411,7 +428,15 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                     match L::QUERY {
                         // The next report is of the place at rest.
                         Some(query) => self.urgent(query),
-                        None => self.rested(then, self.at),
+                        // An answer that came wrong is asked for again.
+                        None if !self.is_told && self.asks < MOST_ASKS => {
+                            self.asks += 1;
+                            self.phase = Phase::Ending(then, false);
+                            let mut text = OpText::default();
+                            self.language.rest(&mut text);
+                            self.push(&text, Purpose::Rest);
+                        }
+                        None => self.rested(then, self.at.filter(|_| self.is_told)),
                     }
                 }
             }
@@ -474,6 +499,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
 
     fn report(&mut self, doing: Option<Doing>, at: Option<Point>) {
         self.at = at.or(self.at);
+        self.is_told |= at.is_some();
         if self.phase == Phase::Unheard {
             self.first_heard();
         }
@@ -540,7 +566,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             }
         }
         self.sent_ops = self.index;
-        if !is_room || !self.trail.rests_at(at, self.settings.rest_within_mm) {
+        if !is_room || !self.trail.rests_at(at, self.rest_within_mm()) {
             self.notice(MachineNotice::NotResumed { told: at });
             self.knows_place = false;
         }

@@ -46,6 +46,13 @@ impl Language for MDraw<'_> {
         written
     }
 
+    fn lift(&mut self, _: Point, out: &mut OpText) -> Result<(), WriteError> {
+        self.writer.out_mut().clear();
+        let written = self.writer.lift();
+        out.clone_from(self.writer.out_mut());
+        written
+    }
+
     fn jog(&mut self, at: Point, by: Vec2, _: f64, out: &mut OpText) -> bool {
         let to = at + by;
         writeln!(out, "G1 X{:.2} Y{:.2}", to.x, to.y).is_ok()
