@@ -2,6 +2,8 @@
 //!
 //! Each subcommand is the code behind the example of the same name, so both give the same bytes.
 
+#[cfg(feature = "live")]
+mod live_drawing;
 mod papers;
 mod recordings;
 
@@ -77,7 +79,13 @@ fn command() -> clap::Command {
 }
 
 fn main() -> ExitCode {
-    let matches = command().get_matches();
+    let arguments = std::env::args_os().collect::<Vec<_>>();
+    #[cfg(feature = "live")]
+    let (arguments, _kept) = match live_drawing::made(arguments) {
+        Ok(made) => made,
+        Err(status) => return status,
+    };
+    let matches = command().get_matches_from(arguments);
     if let Some((name, given)) = matches.subcommand()
         && let Some(code) = recordings::run(name, given)
     {
