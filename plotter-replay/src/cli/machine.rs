@@ -70,10 +70,16 @@ pub(crate) fn simulated_header(machine: &Machine, spoken: crate::live::Spoken) -
         (_, MachineKind::Belt) => belt_header(machine),
         (Spoken::Link { boot }, _) => header_of(machine, "link", Some(boot)),
         (Spoken::Digits, _) => header_of(machine, "digits", None),
-        (Spoken::Grbl | Spoken::MDraw, _) => {
+        (Spoken::Grbl | Spoken::MDraw | Spoken::Marlin | Spoken::Hpgl, _) => {
+            let protocol = match spoken {
+                Spoken::Grbl => "grbl",
+                Spoken::Marlin => "marlin",
+                Spoken::Hpgl => "hpgl",
+                _ => "mdraw",
+            };
             let header = Header::new()
                 .with_number("baud", config.serial.baud.into())
-                .with_text("protocol", if spoken == Spoken::Grbl { "grbl" } else { "mdraw" })
+                .with_text("protocol", protocol)
                 .with_text("machine", config.name.as_str());
             // Another machine's controller is not that of the preset, and takes a description.
             let is_preset = *config == MachineConfig::stepper_plotter();

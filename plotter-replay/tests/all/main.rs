@@ -43,4 +43,6 @@ mod sim_drawings_over_lines;
 mod sim_link;
 #[cfg(all(feature = "cli", feature = "live", unix))]
 mod simulate;
+#[cfg(all(feature = "cli", feature = "live", unix))]
+mod simulated_dialects;
 mod virtual_plotter;
