@@ -4,6 +4,7 @@ pub mod digits;
 pub mod frame;
 mod hello;
 mod host;
+pub mod hosts;
 mod link;
 mod link_host;
 mod message;
