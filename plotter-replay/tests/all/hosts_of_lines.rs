@@ -130,7 +130,7 @@ fn pauses_on_a_grbl_machine_lift_the_pen_at_once_and_cost_no_ink() {
 #[test]
 fn a_pause_is_there_within_the_braking_and_not_behind_the_queue() {
     let far = |n: u32| PlotOp::Draw {
-        to: Point::new(if n % 2 == 0 { 1.0 } else { 59.0 }, f64::from(n)),
+        to: Point::new(if n.is_multiple_of(2) { 1.0 } else { 59.0 }, f64::from(n)),
         feed_mm_s: Some(5.0),
     };
     let mut desk = Desk::new(grbl((0..12).map(far).collect()), &machine(), Spoken::Grbl, "");

@@ -23,6 +23,8 @@ mod golden_presets;
 mod golden_simulated;
 #[cfg(feature = "live")]
 mod hosts_of_lines;
+#[cfg(feature = "live")]
+mod hosts_of_marlin;
 mod house;
 mod import;
 mod line;

@@ -139,12 +139,13 @@ fn grbl_error(code: u16) -> &'static str {
     }
 }
 
-/// What GRBL's alarms mean (its wiki, "Grbl v1.1 Interface", alarm messages).
+/// What GRBL's alarms mean (its wiki, "Grbl v1.1 Interface", alarm messages); 112 is Marlin's halt.
 fn grbl_alarm(code: u16) -> &'static str {
     match code {
         1 => "a limit switch was pressed: free the carriage, then lead it home",
         2 => "the movement leads outside the machine: move or scale the drawing, then unlock",
         3 => "it was reset while it moved, and may have lost its place: lead it home",
+        112 => "it has halted: reset it, then lead it home or say where it stands",
         6..=9 => "homing did not find or leave a switch: look at the switches and at the way to them",
         _ => "",
     }
