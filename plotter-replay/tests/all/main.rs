@@ -22,6 +22,8 @@ mod golden_presets;
 #[cfg(feature = "live")]
 mod golden_simulated;
 #[cfg(feature = "live")]
+mod hosts_of_hpgl;
+#[cfg(feature = "live")]
 mod hosts_of_lines;
 #[cfg(feature = "live")]
 mod hosts_of_marlin;

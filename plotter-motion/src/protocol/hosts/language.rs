@@ -51,6 +51,8 @@ pub enum Answer {
     /// A line that is out is refused with this code, if the machine read it whole
     /// ([`complains_of`](Language::complains_of)); else the oldest goes out again.
     Doubtful(u16),
+    /// It complains of something, which it does not say, with its code: the drawing pauses.
+    Complains(u16),
     /// It has stopped by itself and is locked, with its code.
     Alarm(u16),
     /// It was switched on, or reset.
@@ -81,6 +83,12 @@ pub trait Language {
     /// Whether lines have numbers and checksums ([`frame`](Self::frame)): the machine takes each once, so that
     /// one that is not answered may go out again.
     const IS_NUMBERED: bool = false;
+    /// What it answers at once, in the middle of anything, with whether it has room for a line
+    /// ([`Answer::Taken`], else [`Answer::Busy`]): asked while a line is not answered. Empty where there is
+    /// none.
+    const ROOM_QUERY: &'static [u8] = b"";
+    /// Whether the machine changes pens by itself.
+    const CHANGES_PENS: bool = false;
     /// Whether it is by a [`Report`] that a machine is known to rest, not by the answer to the lines of
     /// [`rest`](Self::rest).
     const RESTS_BY_REPORT: bool = false;

@@ -24,6 +24,9 @@ const KEPT_LINES: usize = 4;
 const HEARS_OUT: Duration = Duration::from_millis(25);
 /// So many wishes for lines that are not there, without one for a line that is, show that the machine has begun anew.
 const MOST_STRAYS: u8 = 8;
+/// So many questions for room while the place at rest is not told: a minute of them, five a second. Then it is
+/// asked for again.
+const QUESTIONS_FOR_REST: u16 = 300;
 /// So many reports of a machine that waits, one after the other, say that it has taken all that it will.
 const RESTS_FOR_LOST: u8 = 4;
 
@@ -160,6 +163,9 @@ pub struct LineHost<L, I> {
     strays: u8,
     /// Lines have gone out again for silence since the machine was heard.
     has_tried: bool,
+    /// When it was asked for room last, and how often while the place at rest is not told.
+    room_asked: Option<Duration>,
+    rest_questions: u16,
     earlier: Option<Earlier>,
 }
 
@@ -199,6 +205,8 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             hears_until: None,
             strays: 0,
             has_tried: false,
+            room_asked: None,
+            rest_questions: 0,
             earlier: None,
         }
     }
@@ -310,7 +318,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                 let index = self.index;
                 self.index = self.index.saturating_add(1);
                 let wanted = match op {
-                    PlotOp::SelectPen { pen } if pen > 0 && self.holder != Some(pen) => {
+                    PlotOp::SelectPen { pen } if !L::CHANGES_PENS && pen > 0 && self.holder != Some(pen) => {
                         // The pen that draws first is in the holder already.
                         self.holder.replace(pen).map(|_| Then::Pen(pen))
                     }
@@ -326,7 +334,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                     self.end(then);
                     return None;
                 }
-                if matches!(op, PlotOp::SelectPen { .. }) {
+                if matches!(op, PlotOp::SelectPen { .. }) && !L::CHANGES_PENS {
                     self.sent_ops = self.index;
                     return Some(());
                 }
@@ -618,6 +626,12 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                 self.queue.again_from(self.queue.oldest());
                 self.notice(MachineNotice::SentAgain);
             }
+            Answer::Complains(code) => {
+                self.notice(MachineNotice::Refused { op: None, code });
+                if matches!(self.phase, Phase::Drawing(_)) {
+                    self.phase = Phase::Drawing(Some(0));
+                }
+            }
             Answer::Alarm(code) => {
                 self.notice(MachineNotice::Alarm { code });
                 self.forget();
@@ -679,6 +693,29 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
         }
         if !core::mem::replace(&mut self.is_silent, true) {
             self.notice(MachineNotice::Silent);
+        }
+    }
+
+    /// Asks for room as long as a line is not answered, and, lest the silence be taken for one, until the place
+    /// at rest is told.
+    fn ask_for_room(&mut self, now: Duration) {
+        let waits = self.queue.in_flight().lines > 0 || self.lacks_report();
+        if L::ROOM_QUERY.is_empty() || !waits {
+            (self.room_asked, self.rest_questions) = (None, 0);
+            return;
+        }
+        let asked = *self.room_asked.get_or_insert(now);
+        if now.saturating_sub(asked) < self.settings.ask_every {
+            return;
+        }
+        self.room_asked = Some(now);
+        L::ROOM_QUERY.iter().for_each(|&byte| self.urgent(byte));
+        self.rest_questions = if self.lacks_report() { self.rest_questions.saturating_add(1) } else { 0 };
+        if self.rest_questions >= QUESTIONS_FOR_REST {
+            self.rest_questions = 0;
+            let mut text = OpText::default();
+            self.language.rest(&mut text);
+            self.push(&text, Purpose::Rest);
         }
     }
 
@@ -802,6 +839,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
         if self.is_watched() && now.saturating_sub(since) >= self.patience() {
             self.overdue(now);
         }
+        self.ask_for_room(now);
         self.write();
         let state = self.state();
         if state != self.told {
@@ -852,6 +890,8 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
         };
         let silent = self.heard.max(self.spoke).unwrap_or(began).saturating_add(self.patience());
         let silent = if self.is_watched() { silent } else { Duration::MAX };
+        let asks =
+            self.room_asked.map_or(asks, |asked| asks.min(asked.saturating_add(self.settings.ask_every)));
         let heard_out = self.hears_until.unwrap_or(Duration::MAX);
         Some(asks.min(silent).min(heard_out)).filter(|&wake| wake < Duration::MAX)
     }

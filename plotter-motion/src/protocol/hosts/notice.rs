@@ -125,7 +125,8 @@ fn remedy(f: &mut fmt::Formatter<'_>, words: &str) -> fmt::Result {
     if words.is_empty() { Ok(()) } else { write!(f, ": {words}") }
 }
 
-/// What GRBL's commoner errors ask for (its wiki, "Grbl v1.1 Interface", error messages).
+/// What GRBL's commoner errors ask for (its wiki, "Grbl v1.1 Interface", error messages); from 201 on those
+/// of plotters with HPGL ([`Hpgl`](super::Hpgl)).
 fn grbl_error(code: u16) -> &'static str {
     match code {
         8 | 9 => "it is locked or busy: unlock it, or wait until it stands",
@@ -134,6 +135,11 @@ fn grbl_error(code: u16) -> &'static str {
         15 | 33 => "the movement leads outside the machine, or the arc is none: move or scale the drawing",
         20 => "it does not know the word",
         22 => "no speed was set",
+        201 => "it does not know an instruction: the text came wrong, or is for a newer plotter",
+        202 | 203 => "an instruction came wrong: look at the cable and at the speed of the line",
+        206 => "a place lies too far outside: scale the drawing",
+        210..=215 => "bytes came wrong: look at the cable, at the speed of the line and at its parity",
+        216 => "its buffer has overflown and lost bytes: begin the drawing anew",
         24 | 25 | 26 | 31 => "the line came wrong at the machine",
         _ => "",
     }
