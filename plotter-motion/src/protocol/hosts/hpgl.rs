@@ -15,6 +15,8 @@ const _: () = assert!(ROOM as usize >= 2 * MOST_LINE, "room for two lines");
 const GREATEST_ERROR: u32 = 8;
 /// Errors of the plotter are told by this and their number: 1 to 8 are those of `OE`, 10 to 16 of `ESC .E`.
 const ERRORS: u16 = 200;
+/// What a plotter answers to `OF`: units to the millimetre, of x and y.
+const FACTORS: &str = "40,40";
 /// Greatest coordinate, units: the plotters before HP-GL/2 end there.
 const MOST_UNITS: f64 = 32_767.0;
 /// Speeds that a plotter of that age takes, cm/s.
@@ -53,6 +55,8 @@ pub struct Hpgl {
     speed_cm_s: Option<i32>,
     /// The plotter is to be set up before the next line.
     begins: bool,
+    /// The place that comes next was asked for at rest.
+    rests: bool,
 }
 
 impl Default for Hpgl {
@@ -65,7 +69,7 @@ impl Hpgl {
     /// A plotter that draws with its first pen until the drawing selects one.
     #[must_use]
     pub const fn new() -> Self {
-        Self { pen: 1, speed_cm_s: None, begins: true }
+        Self { pen: 1, speed_cm_s: None, begins: true, rests: false }
     }
 
     /// Sets the plotter up, if that is due.
@@ -134,7 +138,7 @@ impl Language for Hpgl {
     const RESTS_BY_REPORT: bool = true;
 
     fn begin(&mut self) {
-        (self.begins, self.speed_cm_s) = (true, None);
+        (self.begins, self.rests, self.speed_cm_s) = (true, false, None);
     }
 
     fn write(&mut self, op: PlotOp, out: &mut OpText) -> Result<(), WriteError> {
@@ -150,8 +154,9 @@ impl Language for Hpgl {
 
     fn rest(&mut self, out: &mut OpText) {
         let _ = self.lead(out); // there is room for all of it in an empty text
-        // The error of the line is told behind an E, as it comes before what is asked in the drawing.
-        let _ = out.write_str("\x1b.M;;;10;0;69:\x1b.E\x1b.M;;;10:PU;OE;OA;\n");
+        // The error of the line is told behind an E, as it comes before what is asked in the drawing. The units to
+        // the millimetre come before a place that is one of rest: an answer to an earlier question has none.
+        let _ = out.write_str("\x1b.M;;;10;0;69:\x1b.E\x1b.M;;;10:PU;OE;OF;OA;\n");
     }
 
     fn questions(&mut self, out: &mut OpText) {
@@ -184,8 +189,13 @@ impl Language for Hpgl {
                 _ => Answer::Busy,
             };
         }
+        if text == FACTORS {
+            self.rests = true;
+            return Answer::Known;
+        }
         if let Some(at) = place(text) {
-            return Answer::Report(Report { doing: Some(Doing::Idle), at: Some(at) });
+            let doing = core::mem::take(&mut self.rests).then_some(Doing::Idle);
+            return Answer::Report(Report { doing, at: Some(at) });
         }
         // Its name: 7475A.
         let is_name = text.len() <= 16 && text.bytes().all(|byte| byte.is_ascii_alphanumeric());
@@ -208,7 +218,7 @@ mod tests {
 
     #[test]
     fn its_answers_are_told_apart() {
-        let at = |x, y| Answer::Report(Report { doing: Some(Doing::Idle), at: Some(Point::new(x, y)) });
+        let at = |x, y| Answer::Report(Report { doing: None, at: Some(Point::new(x, y)) });
         for (line, wanted) in [
             ("1024", Answer::Taken),
             ("192", Answer::Taken),
@@ -224,6 +234,11 @@ mod tests {
         ] {
             assert_eq!(Hpgl::new().hear(line.as_bytes()), wanted, "{line}");
         }
+        let mut hpgl = Hpgl::new();
+        assert_eq!(hpgl.hear(b"40,40"), Answer::Known);
+        let rest = Report { doing: Some(Doing::Idle), at: Some(Point::new(1.0, 2.0)) };
+        assert_eq!(hpgl.hear(b"40,80,0"), Answer::Report(rest));
+        assert_eq!(hpgl.hear(b"40,80,0"), at(1.0, 2.0));
     }
 
     #[test]

@@ -436,6 +436,10 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
         }
         match purpose {
             Purpose::Drawing { op, ends: true } if L::ANSWERS_WHEN_DONE => self.trail.finish_to(op),
+            // It says nothing of itself that is understood, but it answers.
+            Purpose::Question if self.phase == Phase::Unheard && self.queue.is_out() => {
+                self.phase = Phase::Ready;
+            }
             Purpose::Rest => {
                 if let Phase::Ending(then, is_answered) = &mut self.phase {
                     *is_answered = true;
