@@ -1,9 +1,7 @@
 //! The host of HPGL with a simulated 7475A at the other end.
 
 use crate::driven::{Desk, drawing};
-use plotter_motion::protocol::hosts::{
-    HostState, Hpgl, LineHost, LineHostSettings, MachineHost as _, MachineNotice, Request,
-};
+use plotter_motion::protocol::hosts::{HostState, Hpgl, LineHost, LineHostSettings, MachineNotice, Request};
 use plotter_motion::{Axis, Machine, MachineConfig, PlotOp, Point};
 use plotter_replay::live::Spoken;
 use plotter_replay::log::Event;
@@ -23,20 +21,18 @@ fn machine() -> Machine {
     Machine::new(config).unwrap()
 }
 
-type Host = LineHost<Hpgl, std::vec::IntoIter<PlotOp>>;
-
-fn desk(ops: Vec<PlotOp>) -> Desk<Host> {
+fn desk(ops: Vec<PlotOp>) -> Desk {
     let host = LineHost::new(Hpgl::new(), LineHostSettings::default(), ops.into_iter());
-    let mut desk = Desk::new(host, &machine(), Spoken::Hpgl, "");
+    let mut desk = Desk::new(Box::new(host), &machine(), Spoken::Hpgl, "");
     assert_eq!(desk.until(&[HostState::Ready], LONG), HostState::Ready, "{:?}", desk.notices);
     desk
 }
 
-fn odd(desk: &Desk<Host>) -> Vec<&MachineNotice> {
+fn odd(desk: &Desk) -> Vec<&MachineNotice> {
     desk.notices.iter().filter(|n| !matches!(n, MachineNotice::State(_))).collect()
 }
 
-fn end(desk: &Desk<Host>) -> (i32, i32) {
+fn end(desk: &Desk) -> (i32, i32) {
     desk.steps().iter().fold(
         (0, 0),
         |(x, y), &(axis, sign)| {

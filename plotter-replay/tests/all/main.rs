@@ -27,6 +27,8 @@ mod hosts_of_hpgl;
 mod hosts_of_lines;
 #[cfg(feature = "live")]
 mod hosts_of_marlin;
+#[cfg(feature = "live")]
+mod hosts_on_bad_lines;
 mod house;
 mod import;
 mod line;

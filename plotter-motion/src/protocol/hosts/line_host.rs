@@ -143,6 +143,8 @@ pub struct LineHost<L, I> {
     at: Option<Point>,
     /// Whether the machine's place is that of the drawing.
     knows_place: bool,
+    /// Whether it moves by hand: GRBL refuses all but further such movements until it stands.
+    jogs: bool,
     /// Whether what was sent is forgotten, and the place where it ended not told yet.
     is_interrupted: bool,
     pen: Pen,
@@ -191,6 +193,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             told: HostState::Unheard,
             at: None,
             knows_place: true,
+            jogs: false,
             is_interrupted: false,
             pen: Pen::Up,
             holder: None,
@@ -387,6 +390,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
     /// The machine has forgotten all that it was sent.
     fn forget(&mut self) {
         self.interrupt_ending();
+        self.jogs = false;
         self.queue.clear();
         self.language.begin();
         self.language.count_anew();
@@ -551,6 +555,9 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             self.settle(at.or(self.at));
         }
         self.rests = if doing == Some(Doing::Idle) { self.rests.saturating_add(1) } else { 0 };
+        if self.rests > 0 && self.queue.in_flight().lines == 0 {
+            self.jogs = false;
+        }
         if self.rests >= RESTS_FOR_LOST && L::QUERY.is_some() && self.queue.in_flight().lines > 0 {
             // It waits, and so has taken all that it will take.
             self.notice(MachineNotice::AnswerLost);
@@ -636,6 +643,8 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                     self.phase = Phase::Drawing(Some(0));
                 }
             }
+            // (of a stop that was asked for it is no news)
+            Answer::Alarm(_) if self.phase == Phase::Stopped => self.forget(),
             Answer::Alarm(code) => {
                 self.notice(MachineNotice::Alarm { code });
                 self.forget();
@@ -657,7 +666,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
     /// it.
     fn hear_out(&mut self, now: Duration) {
         self.hears_until = Some(now.saturating_add(HEARS_OUT));
-        if self.queue.next().is_some_and(|(_, is_begun)| is_begun) {
+        if self.queue.next().is_some_and(|(_, _, is_begun)| is_begun) {
             self.urgent(b'\n');
         }
     }
@@ -864,7 +873,11 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
             return None;
         }
         self.hears_until = None;
-        let (bytes, is_begun) = self.queue.next()?;
+        let (bytes, purpose, is_begun) = self.queue.next()?;
+        if self.jogs && purpose != Purpose::Jog {
+            return None;
+        }
+        self.jogs |= purpose == Purpose::Jog && L::QUERY.is_some();
         if !is_begun && !self.language.fits(self.queue.in_flight(), bytes) {
             return None;
         }
@@ -971,7 +984,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
                     return Err(NotNow::OutOfRange);
                 }
                 let has_word = self.language.jog(self.at.unwrap_or_default(), by, feed_mm_s, &mut text);
-                self.by_hand(&text, has_word, Purpose::ByHand)
+                self.by_hand(&text, has_word, Purpose::Jog)
             }
             Request::EndJog => {
                 self.is_free()?;
@@ -1013,7 +1026,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
         HostStatus {
             state: self.state(),
             at: self.at,
-            pen: self.pen,
+            pen: self.trail.pen().unwrap_or(self.pen),
             sent: self.sent_ops,
             done: if self.phase == Phase::Done { self.index } else { self.trail.done() },
             feed_percent: self.feed_percent,

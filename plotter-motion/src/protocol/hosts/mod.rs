@@ -17,6 +17,7 @@
 //! All of them are [`LineHost`]s of a [`Language`]. A machine of the published digits, or of our link, has
 //! [`Host`](super::Host) and [`LinkHost`](super::LinkHost), whose targets are counts.
 
+mod finder;
 mod grbl;
 mod hpgl;
 mod language;
@@ -29,6 +30,7 @@ mod ring;
 mod trail;
 mod words;
 
+pub use finder::{Finder, Finding, Tongue};
 pub use grbl::Grbl;
 pub use hpgl::Hpgl;
 pub use language::{Answer, Doing, Language, OpText, Report};
@@ -188,7 +190,7 @@ pub struct HostStatus {
     pub state: HostState,
     /// Where the pen is, as the machine told last, mm on the sheet.
     pub at: Option<Point>,
-    /// How the pen is, as far as what was sent last says.
+    /// How the pen is: as what is under way has it, or else what was sent last.
     pub pen: Pen,
     /// Operations of the drawing that were sent whole.
     pub sent: u64,
