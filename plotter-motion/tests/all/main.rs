@@ -37,6 +37,8 @@ mod gcode_kinds;
 mod gcode_producers;
 mod gcode_reader;
 mod gcode_real_files;
+mod host_of_hpgl;
+mod host_of_marlin;
 mod hpgl_against_hp2xx;
 mod hpgl_characters;
 mod hpgl_coordinates;

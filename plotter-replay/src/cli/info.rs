@@ -3,7 +3,7 @@
 use super::beginning::{Beginning, beginning, place};
 use super::commands::{Done, Verdict, read, say, say_damage, say_first};
 use crate::log::{Event, Record};
-use crate::virtual_plotter::LineCounts;
+use crate::virtual_plotter::{CountedBy, LineCounts};
 use crate::{
     PlotterSettings, VirtualPlotter,
     compare::{ContourTally, Ways},
@@ -209,7 +209,7 @@ impl Info {
                 if plotter.is_linked() { " (where the machine told its place: every 20 ms)" } else { "" };
             say(out, &format!("contour error: rms {:.4} mm, max {:.4} mm{told}", error.rms_mm, error.max_mm));
         }
-        let is_text = plotter.line_counts().is_some();
+        let is_text = plotter.line_counts().is_some() || plotter.settings().counted_by == CountedBy::Steps;
         if !is_text
             && controller.bytes > 0
             && counts.iter().any(|&(name, count)| name == "edges" && count == 0)

@@ -68,9 +68,10 @@ pub(crate) fn simulated_header(machine: &Machine, spoken: crate::live::Spoken) -
         (_, MachineKind::Belt) => belt_header(machine),
         (Spoken::Link { boot }, _) => header_of(machine, "link", Some(boot)),
         (Spoken::Digits, _) => header_of(machine, "digits", None),
-        (Spoken::Grbl | Spoken::MDraw, _) => {
-            lines_header(machine, if spoken == Spoken::Grbl { "grbl" } else { "mdraw" })
-        }
+        (Spoken::Grbl, _) => lines_header(machine, "grbl"),
+        (Spoken::MDraw, _) => lines_header(machine, "mdraw"),
+        (Spoken::Marlin, _) => lines_header(machine, "marlin"),
+        (Spoken::Hpgl, _) => lines_header(machine, "hpgl"),
     };
     header.with_text("clock", "simulated")
 }

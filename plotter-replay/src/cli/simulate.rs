@@ -72,6 +72,10 @@ enum Dialect {
     Grbl,
     /// The lines of Makeblock's mDraw: stepper motors
     Mdraw,
+    /// Lines with checksums, as Marlin 2.1 answers them: stepper motors
+    Marlin,
+    /// HPGL with device control, as a 7475A on a serial line: stepper motors
+    Hpgl,
     /// The published ten digits a target: DC motors
     Digits,
     /// The reliable link with a host that calls, else digits: DC motors that each move an axis
@@ -161,6 +165,8 @@ impl Simulate {
         match self.dialect.unwrap_or(usual) {
             Dialect::Grbl => Spoken::Grbl,
             Dialect::Mdraw => Spoken::MDraw,
+            Dialect::Marlin => Spoken::Marlin,
+            Dialect::Hpgl => Spoken::Hpgl,
             Dialect::Digits => Spoken::Digits,
             Dialect::Link => Spoken::Link { boot: clock_bits() },
         }

@@ -8,7 +8,9 @@ use super::{Command, Showing};
 use crate::log::{Event, Record};
 use crate::player::ControllerError;
 use crate::serial::{PortError, PortErrorKind};
-use crate::simulation::{Act, ActError, Script, Seen, Simulation, Take, Told, World, belt, steppers};
+use crate::simulation::{
+    Act, ActError, Script, Seen, Simulation, Take, Told, World, belt, hpgl, marlin, steppers,
+};
 use core::fmt;
 use core::time::Duration;
 use plotter_motion::firmware::stepper_plotter::Dialect;
@@ -91,6 +93,10 @@ pub enum Spoken {
     Grbl,
     /// mDraw's lines: stepper motors.
     MDraw,
+    /// Marlin's lines: stepper motors that move a pen.
+    Marlin,
+    /// HPGL, as a 7475A on a serial line: stepper motors that move a pen.
+    Hpgl,
 }
 
 /// A machine whose time passes step by step, whatever its controller.
@@ -205,12 +211,16 @@ impl SimulatedMachine {
                     .map_err(refused)?;
                 gantry(machine, if let Spoken::Link { boot } = spoken { Some(boot) } else { None })
             }
-            (Spoken::Grbl | Spoken::MDraw, _) => {
+            (Spoken::Grbl | Spoken::MDraw | Spoken::Marlin | Spoken::Hpgl, _) => {
                 machine
                     .require(MachineKind::Steppers, "what is simulated with lines of text")
                     .map_err(refused)?;
-                let dialect = if spoken == Spoken::Grbl { Dialect::Grbl } else { Dialect::MDraw };
-                Box::new(steppers(machine, dialect)?)
+                match spoken {
+                    Spoken::Marlin => Box::new(marlin(machine)?),
+                    Spoken::Hpgl => Box::new(hpgl(machine)?),
+                    Spoken::Grbl => Box::new(steppers(machine, Dialect::Grbl)?),
+                    _ => Box::new(steppers(machine, Dialect::MDraw)?),
+                }
             }
         };
         Ok(Self::of(bench))

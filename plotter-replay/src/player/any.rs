@@ -1,5 +1,6 @@
 //! [`AnyController`]: the controller of a machine, whichever it is.
 
+use super::fronts::{Hpgl, Marlin};
 use super::machine::gate;
 use super::told::Told;
 use super::{
@@ -26,13 +27,16 @@ use std::path::Path;
 /// | `controller` `marking-board` | none given | [`MarkingBoard`] with the published controller |
 /// | other | with one belt | [`MarkingBoard`] as the machine's description says |
 /// | `protocol` `grbl` | steppers | [`StepperPlotter`], Grbl's language |
+/// | `protocol` `marlin` | steppers | the same behind a front that answers as Marlin 2.1 |
+/// | `protocol` `hpgl` | steppers | the same behind a front that answers as a 7475A on a serial line |
 /// | other | steppers | [`StepperPlotter`], mDraw's language |
 /// | `controller` `published` or `contouring` | none given | [`MachineController`] with that one |
 /// | other | DC motors | [`MachineController`] as the machine's description says |
 /// | `boot` | as of [`MachineController`] | [`LinkedController`]: a machine that spoke frames ([`LinkedMachine`]) |
 ///
 /// A machine that does not speak the header's `protocol` is refused: DC motors that each move an axis speak
-/// `digits` and `link`, a belt `counts`, steppers `grbl` and `mdraw`.
+/// `digits` and `link`, a belt `counts`, steppers `grbl`, `mdraw`, `marlin` and
+/// `hpgl`.
 ///
 /// ```
 /// # use plotter_replay::{AnyController, Controller};
@@ -103,7 +107,7 @@ impl AnyController {
     #[must_use]
     pub fn named(header: &Header) -> Option<&str> {
         header.text("controller").or_else(|| match header.text("protocol") {
-            Some("grbl" | "mdraw") => Some("stepper-plotter"),
+            Some("grbl" | "mdraw" | "marlin" | "hpgl") => Some("stepper-plotter"),
             Some("counts") => Some("marking-board"),
             _ => None,
         })
@@ -124,6 +128,12 @@ impl AnyController {
                 Box::new(AnsweringBoard::new(&machine))
             }
             MachineKind::Belt => Box::new(MarkingBoard::<ChosenController>::of(&machine, gate())),
+            MachineKind::Steppers if header.text("protocol") == Some("marlin") => {
+                Box::new(Marlin::new(&machine)?)
+            }
+            MachineKind::Steppers if header.text("protocol") == Some("hpgl") => {
+                Box::new(Hpgl::new(&machine)?)
+            }
             MachineKind::Steppers => {
                 let dialect =
                     if header.text("protocol") == Some("grbl") { Dialect::Grbl } else { Dialect::MDraw };
@@ -158,6 +168,8 @@ fn machine_of(header: &Header, machine: Option<&Machine>) -> Result<Machine, Con
         Some("counts") => Some((MachineKind::Belt, "a log of the protocol \"counts\"")),
         Some("grbl") => Some((MachineKind::Steppers, "a log of the protocol \"grbl\"")),
         Some("mdraw") => Some((MachineKind::Steppers, "a log of the protocol \"mdraw\"")),
+        Some("marlin") => Some((MachineKind::Steppers, "a log of the protocol \"marlin\"")),
+        Some("hpgl") => Some((MachineKind::Steppers, "a log of the protocol \"hpgl\"")),
         None | Some("messages") => None,
         Some(other) => {
             return Err(ControllerError {
@@ -224,6 +236,8 @@ mod tests {
             ("counts", MachineKind::Belt),
             ("grbl", MachineKind::Steppers),
             ("mdraw", MachineKind::Steppers),
+            ("marlin", MachineKind::Steppers),
+            ("hpgl", MachineKind::Steppers),
         ] {
             for config in [gantry, belt, steppers] {
                 let kind = Machine::new(config).unwrap().kind();

@@ -10,13 +10,15 @@
 
 mod act;
 mod belt;
+mod fronts;
 mod script;
 mod steppers;
 
 pub use act::{Act, ActError};
 pub(crate) use belt::belt;
+pub(crate) use fronts::{hpgl, marlin};
 pub use script::{Script, ScriptError};
-pub(crate) use steppers::steppers;
+pub(crate) use steppers::{Steppers, steppers};
 
 use crate::log::{Event, Record};
 use crate::player::{Controller, Run, Stuck};

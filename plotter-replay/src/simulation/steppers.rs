@@ -152,7 +152,7 @@ pub(super) fn changes(before: LimitSwitches, now: LimitSwitches) -> impl Iterato
 }
 
 impl Steppers {
-    fn of(machine: &Machine) -> Self {
+    pub(super) fn of(machine: &Machine) -> Self {
         let motor = machine.config().stepper_motor;
         Self {
             plant: StepperPlant::new(motor, motor),

@@ -110,10 +110,11 @@ impl VirtualPlotter {
         let lines = match settings.counted_by {
             CountedBy::Grbl => Some(lines(Tongue::Grbl)),
             CountedBy::MDraw => Some(lines(Tongue::MDraw)),
-            CountedBy::Answers | CountedBy::Edges | CountedBy::Link => None,
+            CountedBy::Answers | CountedBy::Edges | CountedBy::Link | CountedBy::Steps => None,
         };
-        // Lines say where the pen is lifted.
-        let pen = if lines.is_some() { Pen::Up } else { Pen::Down };
+        // Lines, or the machine, say where the pen is lifted.
+        let is_up = lines.is_some() || settings.counted_by == CountedBy::Steps;
+        let pen = if is_up { Pen::Up } else { Pen::Down };
         Self {
             settings,
             host: HostDigits::new(settings.resync_gap),
@@ -183,6 +184,9 @@ impl VirtualPlotter {
             Event::Target { x, y } => self.target_taken(StepPoint::new(*x, *y)),
             Event::Edge { axis, sign } if self.settings.counted_by == CountedBy::Edges => {
                 self.listen();
+                self.count(*axis, *sign);
+            }
+            Event::Edge { axis, sign } if self.settings.counted_by == CountedBy::Steps => {
                 self.count(*axis, *sign);
             }
             Event::Edge { axis, sign } if self.lines.is_some() => {
@@ -366,6 +370,9 @@ impl VirtualPlotter {
             self.host_line_byte(byte);
             return;
         }
+        if self.settings.counted_by == CountedBy::Steps {
+            return;
+        }
         self.listen();
         // (an order is no digit: it belongs to no target)
         if self.host_link_byte(byte) || Order::from_byte(byte).is_some() {
@@ -378,6 +385,9 @@ impl VirtualPlotter {
     fn controller_byte(&mut self, byte: u8) {
         if self.lines.is_some() {
             self.controller_line_byte(byte);
+            return;
+        }
+        if self.settings.counted_by == CountedBy::Steps {
             return;
         }
         self.listen();

@@ -58,6 +58,9 @@ pub enum CountedBy {
     Grbl,
     /// The same of mDraw's language: the protocol `mdraw`.
     MDraw,
+    /// The machine's steps alone, of a session whose bytes are not read here: the protocols `marlin` and
+    /// `hpgl`. A log of the line, which has no steps, shows nothing.
+    Steps,
 }
 
 impl Default for PlotterSettings {
@@ -127,14 +130,15 @@ impl PlotterSettings {
             Some("link") => CountedBy::Link,
             Some("grbl") => CountedBy::Grbl,
             Some("mdraw") => CountedBy::MDraw,
+            Some("marlin" | "hpgl") => CountedBy::Steps,
             Some("digits" | "messages") => CountedBy::Answers,
             None if !header.has("protocol") => CountedBy::Answers,
             _ => {
-                let expected = "digits, link, counts, grbl or mdraw: what another one says is not known here";
+                let expected = "digits, link, counts, grbl, mdraw, marlin or hpgl: what another one says is not known here";
                 return Err(SettingsError { key: "protocol", expected });
             }
         };
-        let is_lines = matches!(counted_by, CountedBy::Grbl | CountedBy::MDraw);
+        let is_lines = matches!(counted_by, CountedBy::Grbl | CountedBy::MDraw | CountedBy::Steps);
         let scale_mm = |mm: f64| if is_lines { STEP_MM } else { mm };
         let tolerance = f64::from(base.reached_tolerance_counts);
         let tolerance = number("reached_tolerance_counts", "0 to 100000 counts", counts, tolerance)?;

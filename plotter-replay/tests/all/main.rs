@@ -22,7 +22,11 @@ mod golden_presets;
 #[cfg(feature = "live")]
 mod golden_simulated;
 #[cfg(feature = "live")]
+mod hosts_of_hpgl;
+#[cfg(feature = "live")]
 mod hosts_of_lines;
+#[cfg(feature = "live")]
+mod hosts_of_marlin;
 #[cfg(feature = "live")]
 mod hosts_on_bad_lines;
 mod house;
@@ -51,4 +55,6 @@ mod sim_drawings_over_lines;
 mod sim_link;
 #[cfg(all(feature = "cli", feature = "live", unix))]
 mod simulate;
+#[cfg(all(feature = "cli", feature = "live", unix))]
+mod simulated_dialects;
 mod virtual_plotter;

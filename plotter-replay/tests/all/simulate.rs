@@ -13,14 +13,14 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// A simulated machine, which ends with the test.
-struct Simulated {
+pub(crate) struct Simulated {
     child: Child,
     said: BufReader<ChildStdout>,
-    port: String,
+    pub(crate) port: String,
 }
 
 impl Simulated {
-    fn new(arguments: &[&str], here: &Path) -> Self {
+    pub(crate) fn new(arguments: &[&str], here: &Path) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_plotter-replay"))
             .arg("simulate")
             .args(arguments)
@@ -42,7 +42,7 @@ impl Simulated {
     }
 
     /// Ends it as Ctrl-C does; its status and the rest of what it said.
-    fn end(mut self) -> (Option<i32>, String) {
+    pub(crate) fn end(mut self) -> (Option<i32>, String) {
         let ended =
             Command::new("kill").args(["-INT", &self.child.id().to_string()]).status().unwrap().success();
         assert!(ended);
@@ -74,7 +74,7 @@ fn run(arguments: &[&str], here: &Path) -> (Option<i32>, String) {
 }
 
 /// Reads until this is there; all that came.
-fn until(port: &mut (impl Read + ?Sized), words: &str) -> String {
+pub(crate) fn until(port: &mut (impl Read + ?Sized), words: &str) -> String {
     let (mut heard, began) = (String::new(), Instant::now());
     let mut bytes = [0; 256];
     while !heard.contains(words) {

@@ -1,6 +1,6 @@
 //! [`Language`]: what a [`LineHost`](super::LineHost) has to know of a machine that answers lines.
 
-use super::{InFlight, MachineLimits, Words};
+use super::{InFlight, MOST_LINE, MachineLimits, Words};
 use crate::gcode::WriteError;
 use crate::{PlotOp, Point, Vec2};
 use core::time::Duration;
@@ -48,6 +48,11 @@ pub enum Answer {
     Refused(u16),
     /// The machine wants lines again from this one on, counted from the first, 0.
     Again(u64),
+    /// A line that is out is refused with this code, if the machine read it whole
+    /// ([`complains_of`](Language::complains_of)); else the oldest goes out again.
+    Doubtful(u16),
+    /// It complains of something, which it does not say, with its code: the drawing pauses.
+    Complains(u16),
     /// It has stopped by itself and is locked, with its code.
     Alarm(u16),
     /// It was switched on, or reset.
@@ -75,11 +80,28 @@ pub trait Language {
     const END_JOG: Option<u8> = None;
     /// Whether a line is answered when it is carried out, not when it is taken.
     const ANSWERS_WHEN_DONE: bool = false;
+    /// Whether lines have numbers and checksums ([`frame`](Self::frame)): the machine takes each once, so that
+    /// one that is not answered may go out again.
+    const IS_NUMBERED: bool = false;
+    /// What it answers at once, in the middle of anything, with whether it has room for a line
+    /// ([`Answer::Taken`], else [`Answer::Busy`]): asked while a line is not answered. Empty where there is
+    /// none.
+    const ROOM_QUERY: &'static [u8] = b"";
+    /// Whether the machine changes pens by itself.
+    const CHANGES_PENS: bool = false;
+    /// Whether it is by a [`Report`] that a machine is known to rest, not by the answer to the lines of
+    /// [`rest`](Self::rest).
+    const RESTS_BY_REPORT: bool = false;
+    /// Whether a machine that greets takes the place where it stands for (0, 0).
+    const GREETS_AT_ORIGIN: bool = false;
     /// Longest that a machine takes for a line without a word, at least; the way of the line comes on top.
     const PATIENCE: Duration = Duration::from_secs(10);
 
     /// Forgets what is known of the modes of the machine and of its pen: all is said anew.
     fn begin(&mut self);
+
+    /// What was sent is forgotten, also by the machine, which may count lines from anywhere.
+    fn count_anew(&mut self) {}
 
     /// An operation in lines, each with its end.
     ///
@@ -133,11 +155,21 @@ pub trait Language {
         false
     }
 
+    /// A line with its end as it goes out: with its number, counted from 0. Says whether it found room.
+    fn frame(&self, _number: u64, line: &[u8], out: &mut Words<MOST_LINE>) -> bool {
+        line.iter().all(|&byte| out.push(byte))
+    }
+
     /// Whether a line of so many bytes may go out while others are.
     fn fits(&self, flight: InFlight, bytes: usize) -> bool;
 
     /// What a line of the machine means, without its end.
     fn hear(&mut self, line: &[u8]) -> Answer;
+
+    /// Whether the machine's last complaint was of this line, as it went out.
+    fn complains_of(&self, _line: &[u8]) -> bool {
+        true
+    }
 
     /// What the machine has said of itself.
     fn limits(&self) -> MachineLimits {

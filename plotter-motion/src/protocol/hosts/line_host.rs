@@ -18,6 +18,17 @@ const MOST_URGENT: usize = 32;
 const ROOM_FOR_OP: usize = 12;
 /// How often a machine is asked where it rests, where its answer comes wrong.
 const MOST_ASKS: u8 = 5;
+/// Answered lines that are kept where they have numbers: as many as the machine keeps before it reads a line's
+/// number (`BUFSIZE` of Marlin).
+const KEPT_LINES: usize = 4;
+/// So long nothing goes out when lines came wrong, until all that the machine says of them is heard: an
+/// adapter on USB keeps bytes for up to 16 ms.
+const HEARS_OUT: Duration = Duration::from_millis(25);
+/// So many wishes for lines that are not there, without one for a line that is, show that the machine has begun anew.
+const MOST_STRAYS: u8 = 8;
+/// So many questions for room while the place at rest is not told: a minute of them, five a second. Then it is
+/// asked for again.
+const QUESTIONS_FOR_REST: u16 = 300;
 /// So many reports of a machine that waits, one after the other, say that it has taken all that it will.
 const RESTS_FOR_LOST: u8 = 4;
 
@@ -153,6 +164,15 @@ pub struct LineHost<L, I> {
     asked: Option<Duration>,
     /// Reports of rest since a line was sent or answered.
     rests: u8,
+    /// Nothing goes out before.
+    hears_until: Option<Duration>,
+    /// Wishes for lines that are not there since one for a line that is.
+    strays: u8,
+    /// Lines have gone out again for silence since the machine was heard.
+    has_tried: bool,
+    /// When it was asked for room last, and how often while the place at rest is not told.
+    room_asked: Option<Duration>,
+    rest_questions: u16,
     earlier: Option<Earlier>,
 }
 
@@ -169,7 +189,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             change: None,
             after: None,
             trail: Trail::new(),
-            queue: LineQueue::new(),
+            queue: LineQueue::keeping(if L::IS_NUMBERED { KEPT_LINES } else { 0 }),
             urgent: Ring::new(),
             notices: Ring::new(),
             answer: Words::default(),
@@ -192,6 +212,11 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             is_silent: false,
             asked: None,
             rests: 0,
+            hears_until: None,
+            strays: 0,
+            has_tried: false,
+            room_asked: None,
+            rest_questions: 0,
             earlier: None,
         }
     }
@@ -219,16 +244,25 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
     fn push(&mut self, text: &OpText, purpose: Purpose) -> bool {
         let bytes = text.as_bytes();
         let lines = bytes.split_inclusive(|&byte| byte == b'\n');
-        if lines.clone().count() > self.queue.room() || lines.clone().any(|line| line.len() > MOST_LINE) {
+        let count = lines.clone().count();
+        let first = self.queue.next_number();
+        let framed = |place: usize, line: &[u8]| {
+            let mut out = Words::<MOST_LINE>::default();
+            self.language.frame(first.saturating_add(place as u64), line, &mut out).then_some(out)
+        };
+        let is_room = lines.clone().enumerate().all(|(place, line)| framed(place, line).is_some());
+        if count > self.queue.room() || !is_room {
             return false;
         }
-        let count = lines.clone().count();
         for (place, line) in lines.enumerate() {
             let purpose = match purpose {
                 Purpose::Drawing { op, .. } => Purpose::Drawing { op, ends: place + 1 == count },
+                Purpose::Rest if place + 1 < count => Purpose::ByHand,
                 other => other,
             };
-            self.queue.push(line, purpose);
+            let mut out = Words::<MOST_LINE>::default();
+            self.language.frame(first.saturating_add(place as u64), line, &mut out);
+            self.queue.push(out.as_bytes(), purpose);
         }
         self.rests = 0;
         true
@@ -294,7 +328,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                 let index = self.index;
                 self.index = self.index.saturating_add(1);
                 let wanted = match op {
-                    PlotOp::SelectPen { pen } if pen > 0 && self.holder != Some(pen) => {
+                    PlotOp::SelectPen { pen } if !L::CHANGES_PENS && pen > 0 && self.holder != Some(pen) => {
                         // The pen that draws first is in the holder already.
                         self.holder.replace(pen).map(|_| Then::Pen(pen))
                     }
@@ -310,7 +344,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                     self.end(then);
                     return None;
                 }
-                if matches!(op, PlotOp::SelectPen { .. }) {
+                if matches!(op, PlotOp::SelectPen { .. }) && !L::CHANGES_PENS {
                     self.sent_ops = self.index;
                     return Some(());
                 }
@@ -329,7 +363,8 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
 
     /// Lifts the pen behind what was sent, or where it was interrupted, and waits until all is done.
     fn end(&mut self, then: Then) {
-        let here = self.at.filter(|_| self.is_interrupted).unwrap_or_else(|| self.trail.sent_end());
+        let is_elsewhere = self.is_interrupted || !self.knows_place;
+        let here = self.at.filter(|_| is_elsewhere).unwrap_or_else(|| self.trail.sent_end());
         let mut text = OpText::default();
         let mut lift = OpText::default();
         let lifted = self.language.lift(here, &mut lift).is_ok();
@@ -346,7 +381,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
     fn rested(&mut self, then: Then, at: Option<Point>) {
         let wanted = self.trail.sent_end();
         self.trail.finish_sent();
-        if let Some(told) = at {
+        if let Some(told) = at.filter(|_| self.knows_place) {
             let off = told - wanted;
             if off.x.abs().max(off.y.abs()) > self.rest_within_mm() {
                 self.notice(MachineNotice::Elsewhere { wanted, told });
@@ -375,6 +410,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
         self.jogs = false;
         self.queue.clear();
         self.language.begin();
+        self.language.count_anew();
         self.pen = Pen::Up;
         self.is_interrupted |= self.trail.under_way() > 0;
         if L::QUERY.is_none() {
@@ -421,6 +457,10 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
         }
         match purpose {
             Purpose::Drawing { op, ends: true } if L::ANSWERS_WHEN_DONE => self.trail.finish_to(op),
+            // It says nothing of itself that is understood, but it answers.
+            Purpose::Question if self.phase == Phase::Unheard && self.queue.is_out() => {
+                self.phase = Phase::Ready;
+            }
             Purpose::Rest => {
                 if let Phase::Ending(then, is_answered) = &mut self.phase {
                     *is_answered = true;
@@ -428,6 +468,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                     match L::QUERY {
                         // The next report is of the place at rest.
                         Some(query) => self.urgent(query),
+                        None if L::RESTS_BY_REPORT => {}
                         // An answer that came wrong is asked for again.
                         None if !self.is_told && self.asks < MOST_ASKS => {
                             self.asks += 1;
@@ -462,6 +503,10 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
 
     fn greeted(&mut self) {
         self.notice(MachineNotice::Greeted);
+        if L::GREETS_AT_ORIGIN {
+            self.at = Some(Point::ORIGIN);
+            self.knows_place &= self.index == 0;
+        }
         match self.phase {
             Phase::Unheard => self.first_heard(),
             Phase::Forgetting => {
@@ -519,7 +564,11 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                     self.phase = Phase::Forgetting;
                 }
             }
-            (Some(Doing::Idle), Phase::Ending(then, true)) if !self.is_interrupted => self.rested(then, at),
+            (Some(Doing::Idle), Phase::Ending(then, is_answered))
+                if !self.is_interrupted && (is_answered || (L::RESTS_BY_REPORT && self.queue.is_out())) =>
+            {
+                self.rested(then, at);
+            }
             (_, Phase::Drawing(_) | Phase::Braking | Phase::Ending(..)) => {
                 if let Some(at) = at {
                     self.trail.is_at(at);
@@ -577,6 +626,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
         let answer = core::mem::take(&mut self.answer);
         let is_cut = core::mem::take(&mut self.answer_is_cut);
         self.heard = Some(now);
+        self.has_tried = false;
         if core::mem::take(&mut self.is_silent) {
             self.notice(MachineNotice::HeardAgain);
         }
@@ -600,10 +650,23 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                 }
             }
             Answer::Again(number) => {
-                if self.queue.again_from(number) {
-                    self.notice(MachineNotice::SentAgain);
-                } else {
-                    self.notice(MachineNotice::Garbled);
+                self.hear_out(now);
+                self.again(number);
+            }
+            Answer::Doubtful(code) if self.language.complains_of(self.queue.oldest_bytes()) => {
+                if let Some(purpose) = self.queue.answer() {
+                    self.taken(purpose, Some(code));
+                }
+            }
+            Answer::Doubtful(_) => {
+                self.hear_out(now);
+                self.queue.again_from(self.queue.oldest());
+                self.notice(MachineNotice::SentAgain);
+            }
+            Answer::Complains(code) => {
+                self.notice(MachineNotice::Refused { op: None, code });
+                if matches!(self.phase, Phase::Drawing(_)) {
+                    self.phase = Phase::Drawing(Some(0));
                 }
             }
             // (of a stop that was asked for it is no news)
@@ -622,6 +685,82 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             }
             Answer::Unknown => self.notice(MachineNotice::Garbled),
         }
+    }
+
+    /// Lines go out again when all that is said of those on the way is heard: nothing is under way then, so
+    /// that answers to what was dropped answer nothing. A line that was begun ends, lest the next be a part of
+    /// it.
+    fn hear_out(&mut self, now: Duration) {
+        self.hears_until = Some(now.saturating_add(HEARS_OUT));
+        if self.queue.next().is_some_and(|(_, _, is_begun)| is_begun) {
+            self.urgent(b'\n');
+        }
+    }
+
+    /// The machine has taken all lines before this one, and wants it.
+    fn again(&mut self, number: u64) {
+        while let Some(purpose) = self.queue.take_before(number) {
+            self.taken(purpose, None);
+        }
+        if self.queue.again_from(number) {
+            self.strays = 0;
+            self.notice(MachineNotice::SentAgain);
+        } else if self.strays < MOST_STRAYS {
+            // The number came wrong, or it is that of an earlier host, whose lines were not heard of yet.
+            self.strays += 1;
+            self.queue.again_from(self.queue.oldest());
+            self.notice(MachineNotice::SentAgain);
+        } else {
+            self.strays = 0;
+            self.greeted();
+        }
+    }
+
+    /// Nothing was heard for too long: says so, unless a line that goes out again is answered.
+    fn overdue(&mut self, now: Duration) {
+        let resends = L::IS_NUMBERED && self.queue.in_flight().lines > 0;
+        if resends {
+            self.queue.again_from(self.queue.oldest());
+        } else if self.lacks_report() {
+            let mut text = OpText::default();
+            self.language.rest(&mut text);
+            self.push(&text, Purpose::Rest);
+        }
+        self.spoke = Some(now);
+        if resends && !core::mem::replace(&mut self.has_tried, true) {
+            return;
+        }
+        if !core::mem::replace(&mut self.is_silent, true) {
+            self.notice(MachineNotice::Silent);
+        }
+    }
+
+    /// Asks for room as long as a line is not answered, and, lest the silence be taken for one, until the place
+    /// at rest is told.
+    fn ask_for_room(&mut self, now: Duration) {
+        let waits = self.queue.in_flight().lines > 0 || self.lacks_report();
+        if L::ROOM_QUERY.is_empty() || !waits {
+            (self.room_asked, self.rest_questions) = (None, 0);
+            return;
+        }
+        let asked = *self.room_asked.get_or_insert(now);
+        if now.saturating_sub(asked) < self.settings.ask_every {
+            return;
+        }
+        self.room_asked = Some(now);
+        L::ROOM_QUERY.iter().for_each(|&byte| self.urgent(byte));
+        self.rest_questions = if self.lacks_report() { self.rest_questions.saturating_add(1) } else { 0 };
+        if self.rest_questions >= QUESTIONS_FOR_REST {
+            self.rest_questions = 0;
+            let mut text = OpText::default();
+            self.language.rest(&mut text);
+            self.push(&text, Purpose::Rest);
+        }
+    }
+
+    /// Whether all is answered, and the place at rest was not told.
+    fn lacks_report(&self) -> bool {
+        L::RESTS_BY_REPORT && matches!(self.phase, Phase::Ending(_, true)) && self.queue.is_out()
     }
 
     fn go_on(&mut self, left: Option<u32>) -> Result<(), NotNow> {
@@ -693,7 +832,12 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
 
     /// Whether the machine owes an answer.
     fn waits(&self) -> bool {
-        L::QUERY.is_some() || self.queue.in_flight().lines > 0
+        L::QUERY.is_some() || self.queue.in_flight().lines > 0 || self.lacks_report()
+    }
+
+    /// Whether a silence leads to something.
+    fn is_watched(&self) -> bool {
+        self.waits() && (!self.is_silent || L::IS_NUMBERED)
     }
 
     fn patience(&self) -> Duration {
@@ -731,10 +875,10 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
             self.push(&text, Purpose::Question);
         }
         let since = self.heard.max(self.spoke).unwrap_or(began);
-        if !self.is_silent && self.waits() && now.saturating_sub(since) >= self.patience() {
-            self.is_silent = true;
-            self.notice(MachineNotice::Silent);
+        if self.is_watched() && now.saturating_sub(since) >= self.patience() {
+            self.overdue(now);
         }
+        self.ask_for_room(now);
         self.write();
         let state = self.state();
         if state != self.told {
@@ -751,6 +895,10 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
         if matches!(self.phase, Phase::Braking | Phase::Forgetting) {
             return None;
         }
+        if self.hears_until.is_some_and(|until| now < until) {
+            return None;
+        }
+        self.hears_until = None;
         let (bytes, purpose, is_begun) = self.queue.next()?;
         if self.jogs && purpose != Purpose::Jog {
             return None;
@@ -784,8 +932,11 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
             (None, Some(_)) => Duration::MAX,
         };
         let silent = self.heard.max(self.spoke).unwrap_or(began).saturating_add(self.patience());
-        let silent = if self.is_silent || !self.waits() { Duration::MAX } else { silent };
-        Some(asks.min(silent)).filter(|&wake| wake < Duration::MAX)
+        let silent = if self.is_watched() { silent } else { Duration::MAX };
+        let asks =
+            self.room_asked.map_or(asks, |asked| asks.min(asked.saturating_add(self.settings.ask_every)));
+        let heard_out = self.hears_until.unwrap_or(Duration::MAX);
+        Some(asks.min(silent).min(heard_out)).filter(|&wake| wake < Duration::MAX)
     }
 
     fn ask(&mut self, _: Duration, request: Request) -> Result<(), NotNow> {

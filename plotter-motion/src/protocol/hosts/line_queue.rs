@@ -38,16 +38,22 @@ struct Line {
     purpose: Purpose,
 }
 
-/// Lines in the order in which they are sent, kept until they are answered.
+/// Lines in the order in which they are sent, kept until they are answered, and the last of them beyond that.
 #[derive(Clone, Debug)]
 pub(super) struct LineQueue {
     lines: Ring<Line, MOST_LINES>,
-    /// How many of them are on the line or beyond it.
+    /// How many answered lines are kept.
+    keeps: usize,
+    /// How many of the lines are answered.
+    kept: usize,
+    /// How many behind them are on the line or beyond it.
     sent: usize,
     /// How many bytes of the next are.
     bytes_sent: usize,
     /// Lines answered since the beginning.
     answered: u64,
+    /// Lines that were ever out whole, of which some may go out again.
+    ever_sent: u64,
 }
 
 /// What is out and not answered.
@@ -60,8 +66,29 @@ pub struct InFlight {
 }
 
 impl LineQueue {
-    pub(super) const fn new() -> Self {
-        Self { lines: Ring::new(), sent: 0, bytes_sent: 0, answered: 0 }
+    /// Of what is answered it keeps so many lines: an answer may have been misread.
+    pub(super) const fn keeping(keeps: usize) -> Self {
+        Self { lines: Ring::new(), keeps, kept: 0, sent: 0, bytes_sent: 0, answered: 0, ever_sent: 0 }
+    }
+
+    /// The number of the oldest line that is not answered.
+    pub(super) const fn oldest(&self) -> u64 {
+        self.answered
+    }
+
+    /// That line.
+    pub(super) fn oldest_bytes(&self) -> &[u8] {
+        self.lines.get(self.kept).and_then(|line| line.bytes.get(..line.count)).unwrap_or_default()
+    }
+
+    /// The number of the next line that comes in.
+    pub(super) const fn next_number(&self) -> u64 {
+        self.answered.saturating_add((self.lines.len() - self.kept) as u64)
+    }
+
+    /// Whether all lines are out.
+    pub(super) const fn is_out(&self) -> bool {
+        self.kept + self.sent >= self.lines.len()
     }
 
     /// Lines for which there is room.
@@ -78,47 +105,69 @@ impl LineQueue {
     }
 
     pub(super) fn in_flight(&self) -> InFlight {
-        let lines = (0..self.sent).filter_map(|place| self.lines.get(place));
+        let lines = (self.kept..self.kept + self.sent).filter_map(|place| self.lines.get(place));
         InFlight { lines: self.sent, bytes: lines.map(|line| line.count).sum() }
     }
 
     /// Bytes of the next line, what it is for, and whether it is begun; `None` if all are out.
     pub(super) fn next(&self) -> Option<(usize, Purpose, bool)> {
-        self.lines.get(self.sent).map(|line| (line.count, line.purpose, self.bytes_sent > 0))
+        let line = self.lines.get(self.kept + self.sent)?;
+        Some((line.count, line.purpose, self.bytes_sent > 0))
     }
 
     /// The next byte, which counts as sent.
     pub(super) fn next_byte(&mut self) -> Option<u8> {
-        let line = self.lines.get(self.sent)?;
+        let line = self.lines.get(self.kept + self.sent)?;
         let byte = line.bytes.get(..line.count)?.get(self.bytes_sent).copied();
         self.bytes_sent += 1;
         if self.bytes_sent >= line.count {
             self.bytes_sent = 0;
             self.sent += 1;
+            self.ever_sent = self.ever_sent.max(self.answered.saturating_add(self.sent as u64));
         }
         byte
     }
 
     /// The oldest line that is out is answered: what it was for.
     pub(super) fn answer(&mut self) -> Option<Purpose> {
-        if self.sent == 0 {
-            return None;
-        }
-        self.sent -= 1;
-        self.answered = self.answered.saturating_add(1);
-        self.lines.pop().map(|line| line.purpose)
+        if self.sent == 0 { None } else { self.pass() }
     }
 
-    /// Sends again from the line of this number on; says whether that is still here.
+    /// The machine wants the line of this number: the oldest before it is taken, whether it is out again or not.
+    /// What it was for; `None` where there is none, or the number is that of no line that was ever out, nor of
+    /// the next.
+    pub(super) fn take_before(&mut self, number: u64) -> Option<Purpose> {
+        if self.answered >= number || number > self.ever_sent { None } else { self.pass() }
+    }
+
+    fn pass(&mut self) -> Option<Purpose> {
+        let purpose = self.lines.get(self.kept).map(|line| line.purpose)?;
+        (self.sent, self.kept) = (self.sent.saturating_sub(1), self.kept + 1);
+        self.answered = self.answered.saturating_add(1);
+        if self.kept > self.keeps {
+            self.lines.pop();
+            self.kept -= 1;
+        }
+        Some(purpose)
+    }
+
+    /// Sends again from the line of this number on, also one whose answer was misread; says whether that is
+    /// still here.
     pub(super) fn again_from(&mut self, number: u64) -> bool {
-        let place = number.checked_sub(self.answered).and_then(|place| usize::try_from(place).ok());
-        let Some(place) = place.filter(|&place| place <= self.sent) else { return false };
-        (self.sent, self.bytes_sent) = (place, 0);
+        let first = self.answered.saturating_sub(self.kept as u64);
+        let place = number.checked_sub(first).and_then(|place| usize::try_from(place).ok());
+        let Some(place) = place.filter(|&place| place <= self.kept + self.sent) else { return false };
+        if place < self.kept {
+            self.answered = number;
+            self.kept = place;
+        }
+        (self.sent, self.bytes_sent) = (place - self.kept, 0);
         true
     }
 
     /// Forgets all of them: the machine has, too.
     pub(super) fn clear(&mut self) {
-        *self = Self { answered: self.answered, ..Self::new() };
+        let answered = self.answered;
+        *self = Self { answered, ever_sent: answered, ..Self::keeping(self.keeps) };
     }
 }

@@ -10,6 +10,8 @@
 //! | host | machines | flow | place told | stop |
 //! |---|---|---|---|---|
 //! | [`Grbl`] | GRBL 1.1, GRBLHAL, `FluidNC` | bytes of its buffer | `?` | `0x18` |
+//! | [`Marlin`] | Marlin 2 | a line at a time, with number and checksum | `M114` at rest | `M112` |
+//! | [`Hpgl`] | pen plotters with HPGL on a serial line | free bytes of its buffer, `ESC .B` | `OA` at rest | none: `ESC .K` drops what is buffered |
 //! | [`MDraw`] | Makeblock's XY plotter | a line at a time | `P` | none |
 //!
 //! All of them are [`LineHost`]s of a [`Language`]. A machine of the published digits, or of our link, has
@@ -17,9 +19,11 @@
 
 mod finder;
 mod grbl;
+mod hpgl;
 mod language;
 mod line_host;
 mod line_queue;
+mod marlin;
 mod mdraw;
 mod notice;
 mod ring;
@@ -28,9 +32,11 @@ mod words;
 
 pub use finder::{Finder, Finding, Tongue};
 pub use grbl::Grbl;
+pub use hpgl::Hpgl;
 pub use language::{Answer, Doing, Language, OpText, Report};
 pub use line_host::{LineHost, LineHostSettings};
 pub use line_queue::{InFlight, MOST_LINE, Purpose};
+pub use marlin::Marlin;
 pub use mdraw::MDraw;
 pub use notice::MachineNotice;
 pub use words::Words;

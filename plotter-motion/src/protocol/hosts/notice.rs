@@ -128,7 +128,8 @@ fn remedy(f: &mut fmt::Formatter<'_>, words: &str) -> fmt::Result {
     if words.is_empty() { Ok(()) } else { write!(f, ": {words}") }
 }
 
-/// What GRBL's commoner errors ask for (its wiki, "Grbl v1.1 Interface", error messages).
+/// What GRBL's commoner errors ask for (its wiki, "Grbl v1.1 Interface", error messages); from 201 on those
+/// of plotters with HPGL ([`Hpgl`](super::Hpgl)).
 fn grbl_error(code: u16) -> &'static str {
     match code {
         8 | 9 => "it is locked or busy: unlock it, or wait until it stands",
@@ -137,17 +138,23 @@ fn grbl_error(code: u16) -> &'static str {
         15 | 33 => "the movement leads outside the machine, or the arc is none: move or scale the drawing",
         20 => "it does not know the word",
         22 => "no speed was set",
+        201 => "it does not know an instruction: the text came wrong, or is for a newer plotter",
+        202 | 203 => "an instruction came wrong: look at the cable and at the speed of the line",
+        206 => "a place lies too far outside: scale the drawing",
+        210..=215 => "bytes came wrong: look at the cable, at the speed of the line and at its parity",
+        216 => "its buffer has overflown and lost bytes: begin the drawing anew",
         24 | 25 | 26 | 31 => "the line came wrong at the machine",
         _ => "",
     }
 }
 
-/// What GRBL's alarms mean (its wiki, "Grbl v1.1 Interface", alarm messages).
+/// What GRBL's alarms mean (its wiki, "Grbl v1.1 Interface", alarm messages); 112 is Marlin's halt.
 fn grbl_alarm(code: u16) -> &'static str {
     match code {
         1 => "a limit switch was pressed: free the carriage, then lead it home",
         2 => "the movement leads outside the machine: move or scale the drawing, then unlock",
         3 => "it was reset while it moved, and may have lost its place: lead it home",
+        112 => "it has halted: reset it, then lead it home or say where it stands",
         6..=9 => "homing did not find or leave a switch: look at the switches and at the way to them",
         _ => "",
     }

@@ -28,7 +28,7 @@ impl<const N: usize> Words<N> {
     }
 
     /// Takes a byte more; what finds no room is left out, and this says so.
-    pub(super) fn push(&mut self, byte: u8) -> bool {
+    pub fn push(&mut self, byte: u8) -> bool {
         let slot = self.bytes.get_mut(self.count);
         let has_room = slot.is_some();
         if let Some(slot) = slot {
