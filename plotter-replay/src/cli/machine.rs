@@ -70,6 +70,15 @@ pub(crate) fn simulated_header(machine: &Machine, spoken: crate::live::Spoken) -
         (_, MachineKind::Belt) => belt_header(machine),
         (Spoken::Link { boot }, _) => header_of(machine, "link", Some(boot)),
         (Spoken::Digits, _) => header_of(machine, "digits", None),
+        (Spoken::Ebb { is_mixed }, _) => {
+            let header = Header::new()
+                .with_number("baud", config.serial.baud.into())
+                .with_text("protocol", "ebb")
+                .with_text("machine", config.name.as_str())
+                .with_decimal("x_mm_per_pulse", 1.0 / config.x.stepper.steps_per_mm)
+                .with_decimal("y_mm_per_pulse", 1.0 / config.y.stepper.steps_per_mm);
+            if is_mixed { header.with_text("belt_signs", "tracking-equations") } else { header }
+        }
         (Spoken::Grbl | Spoken::MDraw, _) => {
             let header = Header::new()
                 .with_number("baud", config.serial.baud.into())

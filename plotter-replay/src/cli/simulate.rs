@@ -72,6 +72,10 @@ enum Dialect {
     Grbl,
     /// The lines of Makeblock's mDraw: stepper motors
     Mdraw,
+    /// The commands of an EBB, its motors on one belt as in the AxiDraw: stepper motors
+    Ebb,
+    /// The commands of an EBB, each motor with an axis of its own as in the EggBot: stepper motors
+    Eggbot,
     /// The published ten digits a target: DC motors
     Digits,
     /// The reliable link with a host that calls, else digits: DC motors that each move an axis
@@ -161,6 +165,8 @@ impl Simulate {
         match self.dialect.unwrap_or(usual) {
             Dialect::Grbl => Spoken::Grbl,
             Dialect::Mdraw => Spoken::MDraw,
+            Dialect::Ebb => Spoken::Ebb { is_mixed: true },
+            Dialect::Eggbot => Spoken::Ebb { is_mixed: false },
             Dialect::Digits => Spoken::Digits,
             Dialect::Link => Spoken::Link { boot: clock_bits() },
         }

@@ -8,7 +8,7 @@ use super::{Command, Showing};
 use crate::log::{Event, Record};
 use crate::player::ControllerError;
 use crate::serial::{PortError, PortErrorKind};
-use crate::simulation::{Act, ActError, Script, Seen, Simulation, Take, Told, World, belt, steppers};
+use crate::simulation::{Act, ActError, Script, Seen, Simulation, Take, Told, World, belt, ebb, steppers};
 use core::fmt;
 use core::time::Duration;
 use plotter_motion::firmware::stepper_plotter::Dialect;
@@ -91,6 +91,11 @@ pub enum Spoken {
     Grbl,
     /// mDraw's lines: stepper motors.
     MDraw,
+    /// The commands of an EBB: stepper motors.
+    Ebb {
+        /// Whether both motors move the pen by one belt, as in the AxiDraw; else each moves an axis.
+        is_mixed: bool,
+    },
 }
 
 /// A machine whose time passes step by step, whatever its controller.
@@ -204,6 +209,10 @@ impl SimulatedMachine {
                     .require(MachineKind::Gantry, "what is simulated with digits or frames")
                     .map_err(refused)?;
                 gantry(machine, if let Spoken::Link { boot } = spoken { Some(boot) } else { None })
+            }
+            (Spoken::Ebb { is_mixed }, _) => {
+                machine.require(MachineKind::Steppers, "what is simulated behind an EBB").map_err(refused)?;
+                Box::new(ebb(machine, is_mixed))
             }
             (Spoken::Grbl | Spoken::MDraw, _) => {
                 machine

@@ -3,7 +3,7 @@
 use super::machine::gate;
 use super::told::Told;
 use super::{
-    AnsweringBoard, Controller, EdgeSource, LinkedController, LinkedMachine, MachineController,
+    AnsweringBoard, Controller, EbbBoard, EdgeSource, LinkedController, LinkedMachine, MachineController,
     RecordingTraits,
 };
 use crate::log::{self, Header};
@@ -26,13 +26,14 @@ use std::path::Path;
 /// | `controller` `marking-board` | none given | [`MarkingBoard`] with the published controller |
 /// | other | with one belt | [`MarkingBoard`] as the machine's description says |
 /// | `protocol` `grbl` | steppers | [`StepperPlotter`], Grbl's language |
+/// | `protocol` `ebb` | steppers | [`EbbBoard`] |
 /// | other | steppers | [`StepperPlotter`], mDraw's language |
 /// | `controller` `published` or `contouring` | none given | [`MachineController`] with that one |
 /// | other | DC motors | [`MachineController`] as the machine's description says |
 /// | `boot` | as of [`MachineController`] | [`LinkedController`]: a machine that spoke frames ([`LinkedMachine`]) |
 ///
 /// A machine that does not speak the header's `protocol` is refused: DC motors that each move an axis speak
-/// `digits` and `link`, a belt `counts`, steppers `grbl` and `mdraw`.
+/// `digits` and `link`, a belt `counts`, steppers `grbl`, `mdraw` and `ebb`.
 ///
 /// ```
 /// # use plotter_replay::{AnyController, Controller};
@@ -103,7 +104,7 @@ impl AnyController {
     #[must_use]
     pub fn named(header: &Header) -> Option<&str> {
         header.text("controller").or_else(|| match header.text("protocol") {
-            Some("grbl" | "mdraw") => Some("stepper-plotter"),
+            Some("grbl" | "mdraw" | "ebb") => Some("stepper-plotter"),
             Some("counts") => Some("marking-board"),
             _ => None,
         })
@@ -124,6 +125,9 @@ impl AnyController {
                 Box::new(AnsweringBoard::new(&machine))
             }
             MachineKind::Belt => Box::new(MarkingBoard::<ChosenController>::of(&machine, gate())),
+            MachineKind::Steppers if header.text("protocol") == Some("ebb") => {
+                Box::new(EbbBoard::switched_on())
+            }
             MachineKind::Steppers => {
                 let dialect =
                     if header.text("protocol") == Some("grbl") { Dialect::Grbl } else { Dialect::MDraw };
@@ -158,6 +162,7 @@ fn machine_of(header: &Header, machine: Option<&Machine>) -> Result<Machine, Con
         Some("counts") => Some((MachineKind::Belt, "a log of the protocol \"counts\"")),
         Some("grbl") => Some((MachineKind::Steppers, "a log of the protocol \"grbl\"")),
         Some("mdraw") => Some((MachineKind::Steppers, "a log of the protocol \"mdraw\"")),
+        Some("ebb") => Some((MachineKind::Steppers, "a log of the protocol \"ebb\"")),
         None | Some("messages") => None,
         Some(other) => {
             return Err(ControllerError {

@@ -10,11 +10,13 @@
 
 mod act;
 mod belt;
+mod fronts;
 mod script;
 mod steppers;
 
 pub use act::{Act, ActError};
 pub(crate) use belt::belt;
+pub(crate) use fronts::ebb;
 pub use script::{Script, ScriptError};
 pub(crate) use steppers::steppers;
 

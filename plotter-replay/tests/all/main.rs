@@ -43,4 +43,6 @@ mod sim_drawings_over_lines;
 mod sim_link;
 #[cfg(all(feature = "cli", feature = "live", unix))]
 mod simulate;
+#[cfg(feature = "live")]
+mod simulated_ebb;
 mod virtual_plotter;
