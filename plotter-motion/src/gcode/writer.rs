@@ -188,6 +188,11 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
         Ok(())
     }
 
+    /// What has been written so far: a host that sends lines as they come takes them out of here.
+    pub fn out_mut(&mut self) -> &mut W {
+        &mut self.out
+    }
+
     /// Ends the drawing: pen up, end of the program. Gives the sink back.
     ///
     /// # Errors

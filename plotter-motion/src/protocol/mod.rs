@@ -5,6 +5,7 @@ pub mod ebb;
 pub mod frame;
 mod hello;
 mod host;
+pub mod hosts;
 mod link;
 mod link_host;
 mod message;

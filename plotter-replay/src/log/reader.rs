@@ -126,22 +126,25 @@ impl<R: BufRead> Reader<R> {
             return Ok(());
         };
         // One flipped bit in the first word must not cost all that follows: a record there can only be in a
-        // log.
-        if !self.source.place().ended || !self.source.advance_short().map_err(failed)? {
-            return Err(error);
-        }
-        match self.judge() {
-            Ok(parsed) => {
-                let Some(record) =
-                    parsed.of(self.source.line(), &self.bytes).map(|record| record.to_record())
-                else {
-                    return Err(error);
-                };
-                self.waiting.push_back(Ok(record));
-                Ok(())
+        // log. Where the bit made a line end, the first line has become two.
+        for _ in 0..2 {
+            if !self.source.place().ended || !self.source.advance_short().map_err(failed)? {
+                break;
             }
-            Err(_) => Err(error),
+            match self.judge() {
+                Ok(parsed) => {
+                    let record = parsed.of(self.source.line(), &self.bytes).map(|record| record.to_record());
+                    let Some(record) = record else { break };
+                    self.waiting.push_back(Ok(record));
+                    return Ok(());
+                }
+                Err(kind) => {
+                    let damage = self.damage(kind);
+                    self.waiting.push_back(Err(damage));
+                }
+            }
         }
+        Err(error)
     }
 
     /// A first line into which the first record has run because its end was hit, and where that is.

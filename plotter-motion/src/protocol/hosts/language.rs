@@ -1,0 +1,136 @@
+//! [`Language`]: what a [`LineHost`](super::LineHost) has to know of a machine that answers lines.
+
+use super::{InFlight, MachineLimits, Words};
+use crate::gcode::WriteError;
+use crate::{PlotOp, Point, Vec2};
+use core::time::Duration;
+
+/// Text of an operation, all of its lines: an arc of more than three quarters of a turn has two, and before it
+/// the pen is lowered and waited for.
+pub type OpText = Words<384>;
+
+/// What a machine is doing, as it says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Doing {
+    /// It waits.
+    Idle,
+    /// It moves.
+    Moves,
+    /// It brakes for a hold.
+    Brakes,
+    /// It is held, at rest.
+    Held,
+    /// It searches for its switches.
+    Homes,
+    /// It is locked.
+    Locked,
+    /// It sleeps, its door is open, or it only checks lines.
+    Elsewhere,
+}
+
+/// A machine's report of itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Report {
+    /// What it does.
+    pub doing: Option<Doing>,
+    /// Where the pen is, mm on the sheet.
+    pub at: Option<Point>,
+}
+
+/// What a machine's line means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Answer {
+    /// The oldest line that waits is taken.
+    Taken,
+    /// It is refused, with the machine's code.
+    Refused(u16),
+    /// The machine wants lines again from this one on, counted from the first, 0.
+    Again(u64),
+    /// It has stopped by itself and is locked, with its code.
+    Alarm(u16),
+    /// It was switched on, or reset.
+    Greeting,
+    /// It says how it is.
+    Report(Report),
+    /// It is busy with a long line: that is no silence.
+    Busy,
+    /// It says something else that is known.
+    Known,
+    /// That is no line of this language.
+    Unknown,
+}
+
+/// A language of lines, each of which is answered.
+pub trait Language {
+    /// What stops the machine at once, in the middle of anything.
+    const STOP: &'static [u8] = &[];
+    /// What makes it brake and wait with all that it was sent; and what makes it forget that then, so that it
+    /// greets. Where there are none, a pause comes when all that was sent is drawn.
+    const HOLD: Option<(u8, u8)> = None;
+    /// What it answers at once with a [`Report`], in the middle of anything.
+    const QUERY: Option<u8> = None;
+    /// What ends a jog on its way.
+    const END_JOG: Option<u8> = None;
+    /// Whether a line is answered when it is carried out, not when it is taken.
+    const ANSWERS_WHEN_DONE: bool = false;
+    /// Longest that a machine takes for a line without a word, at least; the way of the line comes on top.
+    const PATIENCE: Duration = Duration::from_secs(10);
+
+    /// Forgets what is known of the modes of the machine and of its pen: all is said anew.
+    fn begin(&mut self);
+
+    /// An operation in lines, each with its end.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError`]: it cannot be said, and nothing was.
+    fn write(&mut self, op: PlotOp, out: &mut OpText) -> Result<(), WriteError>;
+
+    /// A movement by hand, in lines; whether there is a word for it.
+    fn jog(&mut self, at: Point, by: Vec2, feed_mm_s: f64, out: &mut OpText) -> bool;
+
+    /// Lines of which the last is answered when all before is done; a [`Report`] of where the machine stands
+    /// then comes before it, or by the query.
+    fn rest(&mut self, out: &mut OpText);
+
+    /// Questions for the beginning.
+    fn questions(&mut self, _out: &mut OpText) {}
+
+    /// The search for the switches; whether there is a word for it.
+    fn home(&mut self, _out: &mut OpText) -> bool {
+        false
+    }
+
+    /// What takes a lock off; whether there is a word for it.
+    fn unlock(&mut self, _out: &mut OpText) -> bool {
+        false
+    }
+
+    /// Where the pen is now is this place; whether there is a word for it.
+    fn stands_at(&mut self, _place: Point, _out: &mut OpText) -> bool {
+        false
+    }
+
+    /// The speed of the drawing, from one share to another: bytes past all lines. The share that they make.
+    fn feed(&mut self, _from_percent: u8, _to_percent: u8, _out: &mut OpText) -> Option<u8> {
+        None
+    }
+
+    /// The number that lowers the pen; whether it is one.
+    fn pen_down_at(&mut self, _number: u16) -> bool {
+        false
+    }
+
+    /// Whether a line of so many bytes may go out while others are.
+    fn fits(&self, flight: InFlight, bytes: usize) -> bool;
+
+    /// What a line of the machine means, without its end.
+    fn hear(&mut self, line: &[u8]) -> Answer;
+
+    /// What the machine has said of itself.
+    fn limits(&self) -> MachineLimits {
+        MachineLimits::default()
+    }
+}
