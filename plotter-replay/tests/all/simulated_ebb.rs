@@ -340,8 +340,11 @@ fn any_bytes_are_taken_and_the_board_answers_after_them() {
     let mut desk = Desk::new();
     let words = b"SMXLTQPE,,,--0123456789\r\r\n\x08\x1b ";
     for _ in 0..20_000 {
-        let n = random.bits();
-        let byte = if n % 8 == 0 { (n >> 8) as u8 } else { words[(n >> 8) as usize % words.len()] };
+        let byte = if random.below(8) == 0 {
+            u8::try_from(random.below(256)).unwrap()
+        } else {
+            words[random.below(words.len())]
+        };
         desk.board.receive(desk.now, byte);
         desk.run_to(desk.now + Duration::from_micros(200));
     }
