@@ -69,6 +69,7 @@ mod prop_control;
 mod prop_cut;
 #[cfg(feature = "alloc")]
 mod prop_drawing;
+mod prop_ebb;
 mod prop_gcode;
 mod prop_homing;
 mod prop_hpgl;
