@@ -2,7 +2,8 @@
 
 use super::commands::{Done, Verdict, say, say_first};
 use super::drawing::DrawingFile;
-use super::machine::{clock_bits, header_of, read_machine_of, speed};
+use super::live_hosted::Protocol;
+use super::machine::{clock_bits, header_of, read_machine, speed};
 use crate::live::{
     Command, Line, LinkChoice, LivePage, MachineLog, PortLine, Recording, Server, Session, SessionSettings,
     SimulatedMachine, State, Telemetry, terminal,
@@ -19,20 +20,20 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// How long a page has for the last of it.
-const LAST_LOOK: Duration = Duration::from_millis(1_500);
+pub(super) const LAST_LOOK: Duration = Duration::from_millis(1_500);
 
 /// How often it is looked whether the machine is stopped.
-const LOOK_EVERY: Duration = Duration::from_millis(200);
+pub(super) const LOOK_EVERY: Duration = Duration::from_millis(200);
 
 /// What is driven, and what with.
 #[derive(Debug, Args)]
 pub(crate) struct Live {
     /// The drawing: HPGL, G-code or the thesis' text. Without one, the machine is watched only.
-    drawing: Option<PathBuf>,
+    pub(super) drawing: Option<PathBuf>,
     /// The serial port of a machine: a name, a part of one that only it has, or `auto` for the only one there
     /// is.
     #[arg(long, value_name = "DEV", conflicts_with = "simulate")]
-    port: Option<String>,
+    pub(super) port: Option<String>,
     /// Simulate the machine of this file instead [default without --port: the semi-virtual gantry].
     #[arg(long, value_name = "MACHINE.toml")]
     simulate: Option<PathBuf>,
@@ -42,25 +43,28 @@ pub(crate) struct Live {
     /// What is spoken with the machine.
     #[arg(long, value_enum, default_value_t)]
     link: Link,
+    /// What a machine with stepper motors speaks.
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) protocol: Protocol,
     /// Go on with the drawing that the host of this log was sending when it ended; the machine must have been
-    /// on since, and speak frames.
+    /// on since, and speak frames or lines of text.
     #[arg(long, value_name = "LOG", requires_all = ["drawing", "port"])]
-    resume: Option<PathBuf>,
+    pub(super) resume: Option<PathBuf>,
     /// Seconds of a simulated machine in one of ours; more than this computer can is as fast as it goes.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = speed, conflicts_with = "port")]
-    speed: f64,
+    pub(super) speed: f64,
     /// The recording [default: live.plog, or the first of live-2.plog, live-3.plog, ... that is not there].
     #[arg(short, long, value_name = "LOG", default_value_os_t = free_name(), hide_default_value = true)]
-    output: PathBuf,
+    pub(super) output: PathBuf,
     /// Show it in this terminal, not in a browser.
     #[arg(long)]
-    terminal: bool,
+    pub(super) terminal: bool,
     /// Port of 127.0.0.1 for the page; 0 takes any that is free.
     #[arg(long, value_name = "NUMBER", default_value_t = 0)]
-    http_port: u16,
+    pub(super) http_port: u16,
     /// Begin at once, without waiting for Start.
     #[arg(long, requires = "drawing")]
-    start: bool,
+    pub(super) start: bool,
 }
 
 /// What is spoken.
@@ -103,7 +107,12 @@ impl Live {
     /// Does it.
     pub(crate) fn run(self, out: &mut impl Write) -> Done {
         let described = self.simulate.as_deref().or(self.machine.as_deref());
-        let machine = read_machine_of(MachineKind::Gantry, "live", described)?;
+        let machine = read_machine(described)?;
+        if Self::is_led_by_lines(&machine) {
+            return self.run_lines(&machine, out);
+        }
+        let place = described.map_or_else(String::new, |path| format!("{}: ", path.display()));
+        machine.require(MachineKind::Gantry, "live").map_err(|error| format!("{place}{error}"))?;
         let config = machine.config();
         let plotter = PlotterSettings {
             x_mm_per_pulse: 1.0 / config.x.counts_per_mm,

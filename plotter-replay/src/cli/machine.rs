@@ -23,23 +23,6 @@ pub(crate) fn read_machine(path: Option<&Path>) -> Result<Machine, String> {
     Machine::from_toml(&text).map_err(|error| refused(&error))
 }
 
-/// The same, if it is of the kind that `user` needs.
-///
-/// # Errors
-///
-/// As [`read_machine`], and for a machine of another kind.
-#[cfg(feature = "live")]
-pub(crate) fn read_machine_of(
-    kind: MachineKind,
-    user: &'static str,
-    path: Option<&Path>,
-) -> Result<Machine, String> {
-    let machine = read_machine(path)?;
-    let place = path.map_or_else(String::new, |path| format!("{}: ", path.display()));
-    machine.require(kind, user).map_err(|error| format!("{place}{error}"))?;
-    Ok(machine)
-}
-
 /// What a log's header says of a machine; `boot` is that of one that is simulated here, and speaks frames.
 #[cfg(feature = "live")]
 pub(crate) fn header_of(machine: &Machine, protocol: &str, boot: Option<u32>) -> Header {
@@ -61,11 +44,26 @@ pub(crate) fn header_of(machine: &Machine, protocol: &str, boot: Option<u32>) ->
     }
 }
 
+/// What a log's header says of a machine that is led by lines of text.
+#[cfg(feature = "live")]
+pub(crate) fn lines_header(machine: &Machine, protocol: &str) -> Header {
+    let config = machine.config();
+    let header = Header::new()
+        .with_number("baud", config.serial.baud.into())
+        .with_text("protocol", protocol)
+        .with_text("machine", config.name.as_str());
+    // Another machine's controller is not that of the preset, and takes a description.
+    let is_preset = *config == MachineConfig::stepper_plotter();
+    let header = if is_preset { header.with_text("controller", "stepper-plotter") } else { header };
+    header
+        .with_decimal("x_mm_per_pulse", 1.0 / config.x.stepper.steps_per_mm)
+        .with_decimal("y_mm_per_pulse", 1.0 / config.y.stepper.steps_per_mm)
+}
+
 /// What the log of a simulated machine says of it.
 #[cfg(all(feature = "live", unix))]
 pub(crate) fn simulated_header(machine: &Machine, spoken: crate::live::Spoken) -> Header {
     use crate::live::Spoken;
-    let config = machine.config();
     let header = match (spoken, machine.kind()) {
         (_, MachineKind::Belt) => belt_header(machine),
         (Spoken::Link { boot }, _) => header_of(machine, "link", Some(boot)),
@@ -80,16 +78,7 @@ pub(crate) fn simulated_header(machine: &Machine, spoken: crate::live::Spoken) -
             if is_mixed { header.with_text("belt_signs", "tracking-equations") } else { header }
         }
         (Spoken::Grbl | Spoken::MDraw, _) => {
-            let header = Header::new()
-                .with_number("baud", config.serial.baud.into())
-                .with_text("protocol", if spoken == Spoken::Grbl { "grbl" } else { "mdraw" })
-                .with_text("machine", config.name.as_str());
-            // Another machine's controller is not that of the preset, and takes a description.
-            let is_preset = *config == MachineConfig::stepper_plotter();
-            let header = if is_preset { header.with_text("controller", "stepper-plotter") } else { header };
-            header
-                .with_decimal("x_mm_per_pulse", 1.0 / config.x.stepper.steps_per_mm)
-                .with_decimal("y_mm_per_pulse", 1.0 / config.y.stepper.steps_per_mm)
+            lines_header(machine, if spoken == Spoken::Grbl { "grbl" } else { "mdraw" })
         }
     };
     header.with_text("clock", "simulated")

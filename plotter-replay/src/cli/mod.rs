@@ -21,6 +21,8 @@ mod import;
 mod info;
 #[cfg(feature = "live")]
 mod live;
+#[cfg(feature = "live")]
+mod live_hosted;
 mod machine;
 mod output;
 mod record;

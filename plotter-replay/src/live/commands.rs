@@ -1,7 +1,9 @@
 //! [`Command`] and [`State`]: what a person may ask of a session, and what it is doing.
 
+use plotter_motion::{Pen, Point, Vec2};
+
 /// What a person asks of a session.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
     /// Begin with the drawing.
     Start,
@@ -13,10 +15,91 @@ pub enum Command {
     Stop,
     /// Forget what was drawn so far, on the screen only.
     Clear,
+    /// Something by hand, on a machine that is led by lines of text.
+    Hand(Hand),
+}
+
+/// What a person does to a machine by hand, while nothing is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Hand {
+    /// Draw the next operation of the drawing, and wait.
+    Next,
+    /// Move by so much, mm, at this speed, mm/s.
+    Jog(Vec2, f64),
+    /// End a movement by hand on its way.
+    EndJog,
+    /// Move to this place with the pen lifted.
+    GoTo(Point),
+    /// Lift or lower the pen where it is.
+    Pen(Pen),
+    /// The number that lowers the pen.
+    PenDownAt(u16),
+    /// Search for the limit switches.
+    Home,
+    /// Take off a lock.
+    Unlock,
+    /// Where the pen is now is this place.
+    StandsAt(Point),
+    /// Speed of the drawing, per cent of what it asks for.
+    Feed(u8),
+    /// A line from one place to another, at this speed, mm/s.
+    Line(Point, Point, f64),
+    /// A rectangle: its lower left corner, width and height, mm, and speed, mm/s.
+    Rectangle(Point, Vec2, f64),
+    /// A circle: its leftmost point, radius, mm, number of points, and speed, mm/s.
+    Circle(Point, f64, u16, f64),
+}
+
+impl Hand {
+    /// The command of these words: `next`, `jog X Y F`, `end-jog`, `go X Y`, `pen up`, `pen down`, `pen-down S`,
+    /// `home`, `unlock`, `origin X Y`, `feed P`, `line X Y X Y F`, `rectangle X Y W H F`, `circle X Y R N F`.
+    fn from_words(words: &str) -> Option<Self> {
+        let mut words = words.split_ascii_whitespace();
+        let name = words.next()?;
+        if name == "pen" {
+            return Some(Self::Pen(match words.next()? {
+                "up" => Pen::Up,
+                "down" => Pen::Down,
+                _ => return None,
+            }));
+        }
+        let mut numbers = [0.0; 5];
+        let mut count = 0;
+        for word in words {
+            *numbers.get_mut(count)? = word.parse::<f64>().ok().filter(|number| number.abs() <= 1e6)?;
+            count += 1;
+        }
+        let [a, b, c, d, e] = numbers;
+        let whole = |number: f64, most: f64| -> Option<u16> {
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "0 to 65535, as checked"
+            )]
+            (0.0..=most).contains(&number).then_some(number as u16)
+        };
+        Some(match (name, count) {
+            ("next", 0) => Self::Next,
+            ("jog", 3) => Self::Jog(Vec2::new(a, b), c),
+            ("end-jog", 0) => Self::EndJog,
+            ("go", 2) => Self::GoTo(Point::new(a, b)),
+            ("pen-down", 1) => Self::PenDownAt(whole(a, 65_535.0)?),
+            ("home", 0) => Self::Home,
+            ("unlock", 0) => Self::Unlock,
+            ("origin", 2) => Self::StandsAt(Point::new(a, b)),
+            ("feed", 1) => Self::Feed(u8::try_from(whole(a, 200.0)?).ok()?),
+            ("line", 5) => Self::Line(Point::new(a, b), Point::new(c, d), e),
+            ("rectangle", 5) => Self::Rectangle(Point::new(a, b), Vec2::new(c, d), e),
+            ("circle", 5) => Self::Circle(Point::new(a, b), c, whole(d, 10_000.0).filter(|&n| n > 2)?, e),
+            _ => return None,
+        })
+    }
 }
 
 impl Command {
-    /// The command of a name: `start`, `pause`, `resume`, `stop`, `clear`.
+    /// The command of a name: `start`, `pause`, `resume`, `stop`, `clear`, or of one by hand with its numbers:
+    /// `jog 10 0 30`.
     ///
     /// ```
     /// # use plotter_replay::live::Command;
@@ -31,7 +114,7 @@ impl Command {
             "resume" => Self::Resume,
             "stop" => Self::Stop,
             "clear" => Self::Clear,
-            _ => return None,
+            _ => Self::Hand(Hand::from_words(name)?),
         })
     }
 }
@@ -39,6 +122,8 @@ impl Command {
 /// What a session is doing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum State {
+    /// It waits for a word of the machine.
+    Connecting,
     /// It has a drawing and waits for [`Command::Start`].
     Ready,
     /// It has no drawing and listens only.
@@ -49,6 +134,10 @@ pub enum State {
     Paused,
     /// The emergency stop is pressed.
     Stopped,
+    /// The machine has locked itself: it is led home or unlocked before anything moves.
+    Locked,
+    /// The machine searches for its limit switches.
+    Homing,
     /// Every target is reached, or as many as could be.
     Done,
     /// The line failed: why.
@@ -60,11 +149,14 @@ impl State {
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
+            Self::Connecting => "connecting",
             Self::Ready => "ready",
             Self::Watching => "watching",
             Self::Running => "running",
             Self::Paused => "paused",
             Self::Stopped => "stopped",
+            Self::Locked => "locked",
+            Self::Homing => "homing",
             Self::Done => "done",
             Self::Failed(_) => "failed",
         }

@@ -13,6 +13,7 @@
 
 mod commands;
 mod engine;
+mod hosted;
 mod line;
 mod machine_line;
 mod machine_log;
@@ -27,9 +28,12 @@ mod showing;
 mod simulated;
 mod tcp_line;
 pub mod terminal;
+mod timetable;
 mod view;
 
-pub use commands::{Command, State};
+pub use commands::{Command, Hand, State};
+#[cfg(feature = "cli")]
+pub(crate) use hosted::MARK;
 pub use line::{Line, PortLine};
 pub use machine_line::MachineLine;
 pub use machine_log::{MachineLog, Recording};
@@ -41,3 +45,4 @@ pub use session_settings::{LinkChoice, SessionSettings};
 pub use showing::Showing;
 pub use simulated::{SimulatedMachine, Spoken, Telemetry, Watch};
 pub use tcp_line::TcpLine;
+pub use timetable::Timetable;

@@ -2,13 +2,17 @@
 
 use super::Plan;
 use crate::PlotterSettings;
-use crate::draw::page::{Desired, along, document};
-use plotter_motion::{Pen, PenMove};
+use crate::draw::page::{DRAWN, Desired, Trail, TrailPoint, along, document, pen_bits};
+use core::time::Duration;
+use plotter_motion::toolpath::chords;
+use plotter_motion::{Pen, PenMove, PlotOp, Point};
 use serde_json::json;
 
 const BODY: &str = include_str!("../draw/page/assets/live.html");
 const PROGRAM: &str = include_str!("../draw/page/assets/live.js");
 
+/// How far a shown chord is from its arc, mm: less than a pixel of the screen at four times the size.
+const CHORD_MM: f64 = 0.05;
 /// Points of the drawing that the page shows, at most.
 const MOST_DESIRED_POINTS: usize = 30_000;
 
@@ -36,8 +40,13 @@ pub struct LivePage {
     pub stops: String,
     /// Names and values.
     pub facts: Vec<(String, String)>,
+    /// Whether the machine is led by hand, too: the page has a panel for it.
+    pub has_hand: bool,
     settings: PlotterSettings,
     meant: Desired,
+    /// The drawing in its order, with its pens and travels, along its way.
+    order: Trail,
+    takes: Option<Duration>,
     plan: Plan,
     at: plotter_motion::Point,
     area_mm: Option<[f64; 4]>,
@@ -53,8 +62,11 @@ impl LivePage {
             about: String::new(),
             stops: String::new(),
             facts: Vec::new(),
+            has_hand: false,
             settings,
             meant: Desired::new(0.5 * settings.x_mm_per_pulse, MOST_DESIRED_POINTS),
+            order: Trail::new(0.5 * settings.x_mm_per_pulse, MOST_DESIRED_POINTS),
+            takes: None,
             plan: Plan::default(),
             at: settings.p1,
             area_mm: None,
@@ -76,6 +88,38 @@ impl LivePage {
         self.at = to;
     }
 
+    /// Takes the next operation of the drawing, drawn from here with this pen.
+    pub fn push_op(&mut self, from: Point, op: PlotOp, pen: u8) {
+        let is_travel = matches!(op, PlotOp::Travel { .. });
+        let mut at = from;
+        let start = PlotOp::Travel { to: from };
+        for to in chords([start, op], CHORD_MM).skip(1).filter_map(PlotOp::target) {
+            self.plan.way_mm += at.distance(to);
+            if !is_travel {
+                self.meant.line(at, to);
+            }
+            for at in [at, to] {
+                let [x0, y0, x1, y1] = self.area_mm.unwrap_or([at.x, at.y, at.x, at.y]);
+                self.area_mm = Some([x0.min(at.x), y0.min(at.y), x1.max(at.x), y1.max(at.y)]);
+            }
+            at = to;
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a float cast saturates"
+            )]
+            let at_us = (self.plan.way_mm * 1e3) as u64;
+            let state = if is_travel { 0 } else { DRAWN | pen_bits(pen) };
+            self.order.push(TrailPoint { at_us, x_mm: to.x, y_mm: to.y, state });
+        }
+        self.plan.targets = self.plan.targets.saturating_add(1);
+    }
+
+    /// How long the drawing takes, by the limits of the machine.
+    pub fn takes(&mut self, time: Duration) {
+        self.takes = Some(time);
+    }
+
     /// How much the drawing is.
     #[must_use]
     pub fn plan(&self) -> Plan {
@@ -92,7 +136,16 @@ impl LivePage {
     #[must_use]
     pub fn finish(self, area_mm: [f64; 4], sources: &str) -> String {
         let (meant, _) = self.meant.finish();
+        let (order, _) = self.order.finish();
+        let um = |mm: f64| libm::round(mm * 1e3);
         let data = json!({
+            "hand": self.has_hand,
+            "takes_s": self.takes.map(|time| time.as_secs_f64()),
+            "order": {
+                "x": order.iter().map(|point| um(point.x_mm)).collect::<Vec<_>>(),
+                "y": order.iter().map(|point| um(point.y_mm)).collect::<Vec<_>>(),
+                "s": order.iter().map(|point| point.state).collect::<Vec<_>>(),
+            },
             "title": self.title,
             "simulated": self.is_simulated,
             "about": self.about,

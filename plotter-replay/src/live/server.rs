@@ -161,6 +161,10 @@ impl Site {
             (Some("" | "/"), _) if request.method == "GET" => {
                 respond(&mut stream, "200 OK", "text/html; charset=utf-8", &self.page)
             }
+            (Some("" | "/"), _) if request.method == "HEAD" => {
+                respond_head(&mut stream, "200 OK", "text/html; charset=utf-8", self.page.len())?;
+                stream.flush()
+            }
             _ => respond(&mut stream, "404 Not Found", "text/plain", "there is no such page"),
         }
     }
@@ -227,14 +231,18 @@ impl Site {
 const FORBIDDEN: &str = "This page needs the whole address that plotter-replay printed, with its token.\n";
 
 fn respond(stream: &mut TcpStream, status: &str, kind: &str, body: &str) -> io::Result<()> {
-    let answer = format!(
-        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nCache-Control: no-store\r\n\
-         X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\nX-Frame-Options: DENY\r\n\
-         Connection: close\r\n\r\n{body}",
-        body.len()
-    );
-    stream.write_all(answer.as_bytes())?;
+    respond_head(stream, status, kind, body.len())?;
+    stream.write_all(body.as_bytes())?;
     stream.flush()
+}
+
+fn respond_head(stream: &mut TcpStream, status: &str, kind: &str, bytes: usize) -> io::Result<()> {
+    let head = format!(
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {bytes}\r\nCache-Control: no-store\r\n\
+         X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\nX-Frame-Options: DENY\r\n\
+         Connection: close\r\n\r\n"
+    );
+    stream.write_all(head.as_bytes())
 }
 
 /// The head of a request; `None` if it is none, or too long.

@@ -1,15 +1,18 @@
 //! [`Session`]: a drawing on its way to a machine.
 
 use super::engine::Engine;
+use super::hosted::HostedEngine;
 use super::line::{Line, lock};
 use super::machine_log::Recording;
 use super::sender::Sender;
-use super::view::{Cursor, View};
+use super::timetable::Timetable;
+use super::view::{Cursor, Hosted, View};
 use super::{Command, LinkChoice, SessionSettings, State, Telemetry};
 use crate::virtual_plotter::CountedBy;
 use core::time::Duration;
 use plotter_motion::PenMove;
 use plotter_motion::protocol::Order;
+use plotter_motion::protocol::hosts::MachineHost;
 use serde_json::Value;
 use std::collections::VecDeque;
 use std::io::Write;
@@ -29,6 +32,8 @@ pub(super) struct Shared {
     pub(super) line: Arc<dyn Line>,
     pub(super) view: Mutex<View>,
     pub(super) commands: Mutex<VecDeque<Command>>,
+    /// What stops the machine at once, where it does not speak digits or frames; none if nothing does.
+    pub(super) stops: &'static [u8],
     /// Whether the machine may speak frames, so that a stop is `00 21 00`.
     pub(super) may_be_linked: AtomicBool,
     /// Whether a stop is on the line that the session's loop has not taken note of: until then it sends
@@ -63,6 +68,7 @@ impl Session {
             line,
             view,
             commands: Mutex::default(),
+            stops: const { &[Order::Stop.byte()] },
             may_be_linked: AtomicBool::new(may_be_linked),
             stop_is_new: Mutex::default(),
             finished: Condvar::new(),
@@ -70,6 +76,35 @@ impl Session {
         let session = Self { shared: Arc::clone(&shared) };
         let host = moves.map(|moves| Sender::new(&settings, moves));
         thread::spawn(move || Engine::new(host, recorder, telemetry, settings, &shared).run());
+        session
+    }
+
+    /// Opens a session of a machine that is led by lines of text. `drawing` is what its host has to send, if
+    /// that is anything; without, it is led by hand only.
+    #[must_use]
+    pub fn hosted<W: Write + Send + 'static>(
+        line: Arc<dyn Line>,
+        host: Box<dyn MachineHost + Send>,
+        drawing: Option<Timetable>,
+        recorder: Option<Recording<W>>,
+        settings: SessionSettings,
+    ) -> Self {
+        let plan = drawing.as_ref().map(Timetable::plan);
+        let mut view = View::new(settings.plotter, State::Ready, plan);
+        view.state = State::Connecting;
+        view.hosted = Some(Hosted { feed_percent: 100, ..Hosted::default() });
+        view.recording = String::from(if recorder.is_some() { "on" } else { "none" });
+        let shared = Arc::new(Shared {
+            line,
+            view: Mutex::new(view),
+            commands: Mutex::default(),
+            stops: host.stop_bytes(),
+            may_be_linked: AtomicBool::new(false),
+            stop_is_new: Mutex::default(),
+            finished: Condvar::new(),
+        });
+        let session = Self { shared: Arc::clone(&shared) };
+        thread::spawn(move || HostedEngine::new(host, drawing, recorder, settings.baud, &shared).run());
         session
     }
 
@@ -131,8 +166,10 @@ impl Shared {
     /// What stops the machine at once: a zero on either side makes a stop by itself of it where frames are
     /// spoken.
     pub(super) fn stop_bytes(&self) -> &'static [u8] {
-        const { &[0, Order::Stop.byte(), 0] }
-            .get(if self.may_be_linked.load(Ordering::Relaxed) { 0..3 } else { 1..2 })
-            .unwrap_or_default()
+        if self.may_be_linked.load(Ordering::Relaxed) {
+            const { &[0, Order::Stop.byte(), 0] }
+        } else {
+            self.stops
+        }
     }
 }

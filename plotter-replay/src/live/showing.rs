@@ -55,6 +55,7 @@ impl Showing {
             line: Arc::new(Nobody),
             view: Mutex::new(view),
             commands: Mutex::default(),
+            stops: &[],
             may_be_linked: AtomicBool::new(false),
             stop_is_new: Mutex::default(),
             finished: Condvar::new(),

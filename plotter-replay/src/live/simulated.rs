@@ -428,7 +428,7 @@ impl<W: Write> SimulatedMachine<W> {
         let (acts, order) = match command {
             Command::Stop => (&[Act::Button { pressed: true }][..], Order::Stop),
             Command::Resume => (&[Act::Button { pressed: false }, Act::Reset][..], Order::GoOn),
-            Command::Start | Command::Pause | Command::Clear => return,
+            Command::Start | Command::Pause | Command::Clear | Command::Hand(_) => return,
         };
         // A machine without such a button is stopped over its line: by a byte between zeros, if need be.
         if acts.iter().any(|act| self.bench.act(act).is_err()) {

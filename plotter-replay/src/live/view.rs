@@ -31,6 +31,19 @@ pub(super) struct Sample {
     pub(super) target: Option<Point>,
 }
 
+/// What a host of lines tells of its machine.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Hosted {
+    /// Where the machine said to be.
+    pub(super) at: Option<Point>,
+    pub(super) is_down: bool,
+    /// What a person has to do, if anything.
+    pub(super) wants: String,
+    pub(super) feed_percent: u8,
+    /// How long the rest of the drawing takes.
+    pub(super) rest: Option<Duration>,
+}
+
 /// Everything that a page or a terminal shows.
 #[derive(Debug)]
 pub(super) struct View {
@@ -52,6 +65,8 @@ pub(super) struct View {
     pub(super) worst_mm: f64,
     /// What became of the recording.
     pub(super) recording: String,
+    /// What a host of lines tells of its machine.
+    pub(super) hosted: Option<Hosted>,
     /// Counts how often the way was cleared.
     pub(super) cleared: u32,
     from: Point,
@@ -94,6 +109,7 @@ impl View {
             error_mm: 0.0,
             worst_mm: 0.0,
             recording: String::new(),
+            hosted: None,
             cleared: 0,
             tolerance_mm,
             edges: 0,
@@ -144,6 +160,18 @@ impl View {
         }
     }
 
+    /// Where the pen is: as the machine says, where it does.
+    pub(super) fn position(&self) -> Point {
+        self.hosted.as_ref().and_then(|hosted| hosted.at).unwrap_or_else(|| self.plotter.position())
+    }
+
+    pub(super) fn is_down(&self) -> bool {
+        match &self.hosted {
+            Some(hosted) => hosted.is_down,
+            None => self.plotter.pen() == Pen::Down,
+        }
+    }
+
     pub(super) fn message(&mut self, time: Duration, text: String) {
         if self.messages.len() >= MOST_MESSAGES {
             self.messages.pop_front();
@@ -153,7 +181,7 @@ impl View {
 
     pub(super) fn sample(&mut self, now: Duration) {
         self.now = now;
-        let (at, target) = (self.plotter.position(), self.plotter.next_target());
+        let (at, target) = (self.position(), self.plotter.next_target());
         let line = target.map(|target| Segment::new(self.from, target).nearest(at));
         if self.samples.len() >= MOST_SAMPLES {
             self.samples.pop_front();
@@ -183,7 +211,10 @@ impl View {
     }
 
     pub(super) fn remaining(&self) -> Option<Duration> {
-        self.pace.remaining(self.plan?, self.done)
+        match &self.hosted {
+            Some(hosted) => hosted.rest,
+            None => self.pace.remaining(self.plan?, self.done),
+        }
     }
 
     /// What is new for a browser that has what `cursor` says.
@@ -201,7 +232,7 @@ impl View {
         let known = usize::try_from(cursor.samples.saturating_sub(self.samples_gone)).unwrap_or(usize::MAX);
         let samples: Vec<Value> = self.samples.iter().skip(known).map(sample_json).collect();
         cursor.samples = self.samples_gone.saturating_add(self.samples.len() as u64);
-        let (at, next) = (self.plotter.position(), self.plotter.next_target());
+        let (at, next) = (self.position(), self.plotter.next_target());
         json!({
             "state": self.state.name(),
             "failure": match &self.state { State::Failed(why) => Some(why), _ => None },
@@ -209,7 +240,9 @@ impl View {
             "at": [at.x, at.y],
             "counts": counts(self.plotter.raw_counts()),
             "next": next.map(|next| [next.x, next.y]),
-            "pen": if self.plotter.pen() == Pen::Down { "down" } else { "up" },
+            "pen": if self.is_down() { "down" } else { "up" },
+            "wants": self.hosted.as_ref().map(|hosted| &hosted.wants),
+            "feed_percent": self.hosted.as_ref().map(|hosted| hosted.feed_percent),
             "speed_mm_s": self.speed_mm_s(),
             "duty": self.duty,
             "error_mm": self.error_mm,

@@ -16,9 +16,13 @@ mod command_line;
 mod damaged_logs;
 #[cfg(all(feature = "cli", feature = "live"))]
 mod devtools;
+#[cfg(feature = "live")]
+mod driven;
 mod golden_presets;
 #[cfg(feature = "live")]
 mod golden_simulated;
+#[cfg(feature = "live")]
+mod hosts_of_lines;
 mod house;
 mod import;
 mod line;

@@ -199,7 +199,6 @@ impl Language for Grbl<'_> {
         }
         match text {
             _ if text.starts_with("Grbl ") || text.starts_with("GrblHAL ") => Answer::Greeting,
-            "" => Answer::Known,
             // Start-up lines are answered behind this.
             _ if text.starts_with('[') || text.starts_with('>') => Answer::Known,
             _ => Answer::Unknown,

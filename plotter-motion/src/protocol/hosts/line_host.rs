@@ -119,6 +119,8 @@ pub struct LineHost<L, I> {
     is_over: bool,
     /// An operation that changes what is in the machine, before which it must rest.
     change: Option<(u64, PlotOp)>,
+    /// What was to come behind what was sent when that was interrupted.
+    after: Option<Then>,
     trail: Trail,
     queue: LineQueue,
     urgent: Ring<u8, MOST_URGENT>,
@@ -158,6 +160,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             index: 0,
             is_over: false,
             change: None,
+            after: None,
             trail: Trail::new(),
             queue: LineQueue::new(),
             urgent: Ring::new(),
@@ -266,6 +269,10 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             self.end(Then::Pause);
             return None;
         }
+        if let Some(then) = self.after.take() {
+            self.end(then);
+            return None;
+        }
         let (index, op) = match self.change.take() {
             Some(changed) => changed,
             None => {
@@ -344,12 +351,22 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
 
     /// The machine has forgotten all that it was sent.
     fn forget(&mut self) {
+        self.interrupt_ending();
         self.queue.clear();
         self.language.begin();
         self.pen = Pen::Up;
         self.is_interrupted |= self.trail.under_way() > 0;
         if L::QUERY.is_none() {
             self.settle(self.at);
+        }
+    }
+
+    /// What was to come at the end comes when the drawing has gone on.
+    fn interrupt_ending(&mut self) {
+        if let Phase::Ending(then, _) = self.phase
+            && then != Then::Pause
+        {
+            self.after = Some(then);
         }
     }
 
@@ -498,6 +515,9 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
     /// Finds where an earlier host has left the drawing.
     fn resume(&mut self) {
         let (Some(earlier), Some(at)) = (self.earlier, self.at) else { return };
+        if L::QUERY.is_some() && self.rests < 2 {
+            return; // it draws what it has
+        }
         self.earlier = None;
         let mut is_room = true;
         while self.index < earlier.sent && is_room {
@@ -531,7 +551,11 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             self.notice(MachineNotice::Garbled);
             return;
         }
-        match self.language.hear(answer.as_bytes().trim_ascii()) {
+        let words = answer.as_bytes().trim_ascii();
+        if words.is_empty() {
+            return; // GRBL begins its greeting with one
+        }
+        match self.language.hear(words) {
             Answer::Taken => {
                 if let Some(purpose) = self.queue.answer() {
                     self.taken(purpose, None);
@@ -731,7 +755,10 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
             Request::GoOn => self.go_on(None),
             Request::Next => self.go_on(Some(1)),
             Request::Pause => match (self.phase, L::HOLD) {
-                (Phase::Drawing(_), Some((hold, _))) if self.trail.under_way() > 0 => {
+                (Phase::Drawing(_) | Phase::Ending(_, false), Some((hold, _)))
+                    if self.trail.under_way() > 0 =>
+                {
+                    self.interrupt_ending();
                     self.urgent(hold);
                     self.urgent(L::QUERY.unwrap_or(hold));
                     self.phase = Phase::Braking;

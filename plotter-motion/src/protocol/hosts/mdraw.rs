@@ -76,7 +76,7 @@ impl Language for MDraw<'_> {
             return Answer::Report(Report { doing: Some(Doing::Idle), at: Some(at) });
         }
         match line {
-            b"" | b"set to default setup" => Answer::Known,
+            b"set to default setup" => Answer::Known,
             _ if [b"distance=".as_slice(), b"M10 ", b"M11 "].iter().any(|head| line.starts_with(head)) => {
                 Answer::Known
             }

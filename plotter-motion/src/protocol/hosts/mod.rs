@@ -15,6 +15,7 @@
 //! All of them are [`LineHost`]s of a [`Language`]. A machine of the published digits, or of our link, has
 //! [`Host`](super::Host) and [`LinkHost`](super::LinkHost), whose targets are counts.
 
+mod finder;
 mod grbl;
 mod language;
 mod line_host;
@@ -25,6 +26,7 @@ mod ring;
 mod trail;
 mod words;
 
+pub use finder::{Finder, Finding, Tongue};
 pub use grbl::Grbl;
 pub use language::{Answer, Doing, Language, OpText, Report};
 pub use line_host::{LineHost, LineHostSettings};

@@ -19,7 +19,7 @@ pub(crate) use numbers::{along, signed, steps};
 pub use recording::{PageSettings, RecordingPage};
 pub(crate) use spread::spread;
 #[cfg(feature = "live")]
-pub(crate) use trail::{DRAWN, Trail, TrailPoint};
+pub(crate) use trail::{DRAWN, Trail, TrailPoint, pen_bits};
 
 const STYLE: &str = include_str!("assets/style.css");
 const COMMON: &str = include_str!("assets/common.js");

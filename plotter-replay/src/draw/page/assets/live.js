@@ -6,9 +6,22 @@ const way = { x: [], y: [], s: [], length: 0 };
 const WINDOW = 30; // seconds that the charts show
 let last = null, latest = null, layer = null, painted = 0, socket = null;
 
+// Before it begins: the drawing in its order, in the colours of its pens, with the travels between.
+const order = { x: data.order.x.map((x) => x * 1e-3), y: data.order.y.map((y) => y * 1e-3), s: data.order.s, length: data.order.s.length };
+const isPreview = () => order.length > 0 && last !== null && ["connecting", "ready"].includes(last.state);
+function paintOrder(canvas) {
+  const { ratio, scale } = canvas, shown = Math.round(order.length * $("order").value / 1000);
+  const way = { x: [0, ...order.x.slice(0, shown)], y: [0, ...order.y.slice(0, shown)], s: [0, ...order.s.slice(0, shown)] };
+  const thick = Math.max(1.6 * ratio, Math.min(0.35 * scale, 12 * ratio));
+  const pens = Array.from({ length: 8 }, (_, pen) => [DRAWN | 28, DRAWN | (pen << 2), colour(pen ? "pen" + pen : "ink"), thick]);
+  strokes(way, 1, shown + 1, canvas, [[DRAWN, 0, colour("travel"), ratio, [2 * ratio, 5 * ratio]], ...pens]);
+  if (shown) pen(canvas, way.x[shown], way.y[shown], (way.s[shown] & DRAWN) !== 0);
+}
+
 const sheet = new Sheet($("sheet"), (canvas) => {
   const { context, ratio, scale } = canvas;
   const thick = Math.max(2.6 * ratio, Math.min(0.35 * scale, 12 * ratio));
+  if (isPreview()) { paintOrder(canvas); return; }
   strokes(meant, 1, meant.length, canvas, [[DRAWN, DRAWN, colour("meant"), ratio]]);
   const key = [canvas.X(0), canvas.Y(0), scale, context.canvas.width, context.canvas.height, colour("ink")].join();
   if (!layer || layer.key !== key || painted > way.length) {
@@ -38,12 +51,18 @@ const error = new Chart($("charts"), "contour error", "mm", [curve("error", "dis
 charts.push(error);
 
 const fixed = (value, digits, unit) => value === null || value === undefined ? "–" : value.toFixed(digits) + " " + unit;
-const clock = (s) => s === null ? "–" : s < 60 ? s.toFixed(0) + " s" : Math.floor(s / 60) + " min " + String(Math.round(s % 60)).padStart(2, "0") + " s";
+const clock = (s) => {
+  if (s === null || s === undefined) return "–";
+  const whole = Math.round(s), two = (n) => String(n).padStart(2, "0");
+  if (whole < 60) return whole + " s";
+  return whole < 3600 ? Math.floor(whole / 60) + " min " + two(whole % 60) + " s" : Math.floor(whole / 3600) + " h " + two(Math.floor(whole / 60) % 60) + " min";
+};
 const duty = (share) => share === undefined ? "not told by this machine" : (share * 100).toFixed(1) + " %";
 const BANNERS = {
+  connecting: ["", "Waiting for the machine to answer."], locked: ["bad", ""], homing: ["", "Searching for the limit switches."],
   ready: ["", "Ready: press Start to draw."], watching: ["", "Watching: there is no drawing to send."], running: ["good", "Drawing."],
-  paused: ["", "Paused: the target under way is finished, no further one is sent."],
-  stopped: ["bad", "EMERGENCY STOP. Resume lets the motors go on."], done: ["good", "Finished."], failed: ["bad", ""],
+  paused: ["", data.hand ? "Paused, the pen is lifted: Resume puts it back where it was." : "Paused: the target under way is finished, no further one is sent."],
+  stopped: ["bad", data.hand ? "EMERGENCY STOP. Resume unlocks the machine and lifts the pen." : "EMERGENCY STOP. Resume lets the motors go on."], done: ["good", "Finished."], failed: ["bad", ""],
 };
 
 function banner(kind, text) {
@@ -76,28 +95,37 @@ function take(update) {
     chart.changed();
   }
   const [kind, text] = BANNERS[update.state];
-  banner(kind, update.state === "failed" ? update.failure + " The recording up to here is kept." : text);
+  const wants = update.wants && !["stopped", "running"].includes(update.state) ? update.wants : "";
+  banner(kind, update.state === "failed" ? update.failure + " The recording up to here is kept." : wants ? wants[0].toUpperCase() + wants.slice(1) + "." : text);
   document.body.dataset.state = update.state;
   $("start").disabled = update.state !== "ready";
   $("pause").disabled = update.state !== "running";
+  if (data.hand) {
+    const free = ["ready", "watching", "paused"].includes(update.state), held = update.state === "locked" || update.state === "stopped";
+    for (const each of $("hand").querySelectorAll("button")) each.disabled = !free;
+    for (const name of ["home", "unlock"]) $("hand").querySelector("[data-ask=" + name + "]").disabled = name === "home" ? !(free || held) : !held;
+    $("hand").querySelector("[data-ask=next]").disabled = !(free && update.targets !== null);
+    $("order").parentNode.parentNode.hidden = !isPreview();
+    if (document.activeElement !== $("feed")) { $("feed").value = update.feed_percent; $("feed-said").textContent = update.feed_percent + " %"; }
+  }
   $("resume").disabled = update.state !== "paused" && update.state !== "stopped";
   $("stop").disabled = update.state === "done" || update.state === "failed";
   $("progress").value = update.targets ? update.sent / update.targets : 0;
   fill($("done"), [
-    ["targets done", update.targets === null ? String(update.sent) : update.sent + " of " + update.targets],
+    [data.hand ? "operations done" : "targets done", update.targets === null ? String(update.sent) : update.sent + " of " + update.targets],
     ["reached", String(update.reached)],
-    ["remaining", update.state === "done" ? "–" : clock(update.remaining_s)],
+    ["remaining", update.state === "done" ? "–" : clock(update.remaining_s ?? (isPreview() ? data.takes_s : null))],
     ["recording", update.recording],
   ]);
   const next = update.next || [null, null], shares = update.duty || [];
   fill($("now"), [
-    ["time", fixed(update.time_s, 2, "s")],
+    ["time", clock(update.time_s)],
     ["pen", update.pen],
     ["position x", fixed(update.at[0], 3, "mm")], ["position y", fixed(update.at[1], 3, "mm")],
     ["next x", fixed(next[0], 3, "mm")], ["next y", fixed(next[1], 3, "mm")],
     ["speed x", fixed(update.speed_mm_s[0], 1, "mm/s")], ["speed y", fixed(update.speed_mm_s[1], 1, "mm/s")],
-    ["duty x", duty(shares[0])], ["duty y", duty(shares[1])],
-    ["contour error", fixed(update.error_mm, 4, "mm")], ["greatest, drawn", fixed(update.worst_mm, 4, "mm")],
+    ...(data.hand ? [] : [["duty x", duty(shares[0])], ["duty y", duty(shares[1])],
+    ["contour error", fixed(update.error_mm, 4, "mm")], ["greatest, drawn", fixed(update.worst_mm, 4, "mm")]]),
     ["anomalies", String(update.anomalies)],
   ]);
   $("messages").replaceChildren(...update.messages.slice().reverse().map(([time, words]) => {
@@ -134,9 +162,47 @@ for (const name of ["start", "pause", "resume", "stop", "clear"]) {
 // At the press, not when the finger is lifted or has slid off; what clicks without a press stops too.
 let pressed = -Infinity;
 $("stop").addEventListener("pointerdown", (event) => { pressed = event.timeStamp; ask("stop"); });
+// By hand: a step at each press, or, where the step is "held", on and on until it is let go.
+const ARROWS = { ArrowLeft: "-1 0", ArrowRight: "1 0", ArrowUp: "0 1", ArrowDown: "0 -1" };
+const FAR = 10000; // mm: longer than any machine; the machine's own limits end it
+let isHeld = false;
+const value = (id) => Number($(id).value) || 0;
+function jog(direction) {
+  const step = Number($("step").value), [x, y] = direction.split(" ").map(Number), by = step || FAR;
+  isHeld = !step;
+  ask(["jog", x * by, y * by, Math.max(0.1, value("jog-speed"))].join(" "));
+}
+function letGo() { if (isHeld) { isHeld = false; ask("end-jog"); } }
+if (data.hand) {
+  $("hand").hidden = $("keys-by-hand").hidden = false;
+  for (const each of document.querySelectorAll("[data-jog]")) {
+    each.addEventListener("pointerdown", (event) => { if (!each.disabled) { each.setPointerCapture(event.pointerId); jog(each.dataset.jog); } });
+    for (const name of ["pointerup", "pointercancel", "lostpointercapture"]) each.addEventListener(name, letGo);
+    each.addEventListener("click", (event) => { if (event.detail === 0) jog(each.dataset.jog); }); // by the keyboard
+  }
+  window.addEventListener("blur", letGo);
+  for (const each of document.querySelectorAll("[data-ask]")) each.addEventListener("click", () => ask(each.dataset.ask));
+  $("go").addEventListener("click", () => ask(["go", value("go-x"), value("go-y")].join(" ")));
+  $("stands").addEventListener("click", () => ask(["origin", value("go-x"), value("go-y")].join(" ")));
+  $("feed").addEventListener("input", () => { $("feed-said").textContent = $("feed").value + " %"; });
+  $("feed").addEventListener("change", () => { ask("feed " + $("feed").value); $("feed").blur(); });
+  $("pen-down-set").addEventListener("click", () => ask("pen-down " + Math.round(value("pen-down"))));
+  const names = { line: ["to x", "to y"], rectangle: ["width", "height"], circle: ["radius", "points"] };
+  const usual = { line: [30, 10], rectangle: [30, 20], circle: [10, 72] };
+  $("shape").addEventListener("change", () => ["a", "b"].forEach((id, n) => {
+    $("shape-" + id + "-name").textContent = names[$("shape").value][n]; $("shape-" + id).value = usual[$("shape").value][n];
+  }));
+  $("draw-shape").addEventListener("click", () => ask([$("shape").value, ...["shape-x", "shape-y", "shape-a", "shape-b", "shape-speed"].map(value)].join(" ")));
+}
+$("order").addEventListener("input", () => {
+  $("order-said").textContent = Math.round($("order").value / 10) + " %";
+  sheet.draw();
+});
+window.addEventListener("keyup", (event) => { if (ARROWS[event.key]) letGo(); });
 window.addEventListener("keydown", (event) => {
   if (event.key === "Escape") { event.preventDefault(); ask("stop"); return; } // always
-  if (event.ctrlKey || event.altKey || event.metaKey || event.repeat || event.target.matches?.("button:enabled")) return;
+  if (event.ctrlKey || event.altKey || event.metaKey || event.repeat || event.target.matches?.("button:enabled, input, select, summary")) return;
+  if (data.hand && ARROWS[event.key]) { event.preventDefault(); jog(ARROWS[event.key]); return; }
   const running = last && last.state === "running";
   const command = { Enter: "start", " ": running ? "pause" : "resume", c: "clear" }[event.key];
   if (command) { event.preventDefault(); ask(command); }

@@ -1,0 +1,394 @@
+//! `live` with a machine that is led by lines of text: Grbl, mDraw.
+
+use super::commands::{Done, Verdict, say, say_first};
+use super::drawing::DrawingFile;
+use super::live::{LAST_LOOK, LOOK_EVERY, Live};
+use super::machine::lines_header;
+use crate::PlotterSettings;
+use crate::live::{
+    Command, Line, LivePage, MachineLog, PortLine, Recording, Server, Session, SessionSettings,
+    SimulatedMachine, Spoken, State, Timetable, terminal,
+};
+use crate::log::{self, Event};
+use crate::resume::DrawingMark;
+use crate::serial::{Port, find};
+use clap::ValueEnum;
+use plotter_motion::config::{MachineKind, PenLift};
+use plotter_motion::gcode::{PenControl, WriteOptions};
+use plotter_motion::protocol::hosts::{
+    Finder, Finding, Grbl, LineHost, LineHostSettings, MDraw, MachineHost, Tongue,
+};
+use plotter_motion::{Machine, Pen, PenMove, PlotOp, Point};
+use std::io::Write;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// What is spoken with a machine that is led by lines of text.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Protocol {
+    /// Found out: its greeting is waited for, then it is asked once in each language
+    #[default]
+    Auto,
+    /// Grbl 1.1, and what is made after it
+    Grbl,
+    /// Makeblock's XY plotter with mDraw's firmware
+    Mdraw,
+}
+
+/// The operations of a drawing.
+type Ops = Box<dyn Iterator<Item = PlotOp> + Send>;
+
+/// How a drawing is: what is shown of it, and how long it takes.
+struct Known {
+    table: Timetable,
+    mark: DrawingMark,
+    errors: u64,
+}
+
+/// A host of the language, for this machine.
+fn host_of(
+    tongue: Tongue,
+    machine: &Machine,
+    ops: Ops,
+    left: Option<(u64, u64)>,
+) -> Result<Box<dyn MachineHost + Send>, String> {
+    let config = machine.config();
+    let settle = Duration::from_secs_f64(config.pen.settle_ms / 1e3);
+    let pen = match config.pen.lifted_by {
+        PenLift::Height => {
+            PenControl::Height { up_mm: config.pen.down_z_mm + 2.0, down_mm: config.pen.down_z_mm }
+        }
+        _ => WriteOptions::default().pen,
+    };
+    let settings = LineHostSettings::default();
+    Ok(match tongue {
+        Tongue::Grbl => {
+            let options =
+                WriteOptions { pen, settle, feed_mm_s: config.planner.speed_mm_s, ..WriteOptions::default() };
+            let host = LineHost::new(Grbl::new(options), settings, ops);
+            Box::new(match left {
+                Some((done, sent)) => host.resuming(done, sent),
+                None => host,
+            })
+        }
+        Tongue::MDraw => {
+            // (once a run, and for as long as it takes)
+            let degrees = |degrees: f64| format!("M1 {degrees:.0}");
+            let language = MDraw::new(degrees(config.pen.up_deg).leak(), degrees(config.pen.down_deg).leak());
+            let host = LineHost::new(language, settings, ops);
+            Box::new(match left {
+                Some((done, sent)) => host.resuming(done, sent),
+                None => host,
+            })
+        }
+        other => return Err(format!("the machine speaks {other}, which `live` has no host for yet")),
+    })
+}
+
+impl Live {
+    /// Whether this machine is led by lines of text.
+    pub(crate) fn is_led_by_lines(machine: &Machine) -> bool {
+        machine.kind() == MachineKind::Steppers
+    }
+
+    /// Does it with such a machine.
+    pub(crate) fn run_lines(self, machine: &Machine, out: &mut impl Write) -> Done {
+        let config = machine.config();
+        let drawing = self.drawing.as_deref().map(DrawingFile::open).transpose()?;
+        let plotter = PlotterSettings::from_header(&lines_header(machine, "grbl"))
+            .map_err(|error| error.to_string())?;
+        let mut page = LivePage::new(config.name.as_str(), plotter);
+        let known =
+            drawing.as_ref().map(|drawing| self.look_at(drawing, machine, &mut page, out)).transpose()?;
+        let left = self.left(known.as_ref())?;
+        let mut verdict = Verdict::Clean;
+        if known.as_ref().is_some_and(|known| known.errors > 0) {
+            verdict = Verdict::Found;
+        }
+        let (line, tongue, name, log): (Arc<dyn Line>, _, _, _) = match &self.port {
+            Some(name) => {
+                let name = find(name).map_err(|error| error.to_string())?;
+                let port = Port::open(&name, config.serial.baud).map_err(|error| error.to_string())?;
+                let line = PortLine::new(port).map_err(|error| error.to_string())?;
+                let tongue = match self.protocol {
+                    Protocol::Grbl => Tongue::Grbl,
+                    Protocol::Mdraw => Tongue::MDraw,
+                    Protocol::Auto => find_tongue(&line, &name, out)?,
+                };
+                (Arc::new(line), tongue, name, None)
+            }
+            None => {
+                let tongue = if self.protocol == Protocol::Mdraw { Tongue::MDraw } else { Tongue::Grbl };
+                let spoken = if tongue == Tongue::MDraw { Spoken::MDraw } else { Spoken::Grbl };
+                let simulated =
+                    SimulatedMachine::speaking(machine, spoken).map_err(|error| error.to_string())?;
+                let log =
+                    self.lines_writer(machine, tongue, known.as_ref(), "simulated").map(MachineLog::new)?;
+                let line = simulated.logged(log.clone()).line(self.speed);
+                (Arc::new(line), tongue, String::from("none: simulated in this program"), Some(log))
+            }
+        };
+        let recording = match log {
+            Some(log) => Recording::Machine(log),
+            None => Recording::Line(self.lines_writer(machine, tongue, known.as_ref(), "host")?),
+        };
+        let counts_per_mm = config.x.counts_per_mm;
+        let ops: Ops = match &drawing {
+            Some(drawing) => Box::new(drawing.ops(counts_per_mm)?.filter_map(Result::ok)),
+            None => Box::new(core::iter::empty()),
+        };
+        let host = host_of(tongue, machine, ops, left)?;
+        let has_stop = !host.stop_bytes().is_empty();
+        let area_mm = [0.0, 0.0, config.area.width_mm, config.area.height_mm];
+        self.describe_lines(&mut page, machine, tongue, &name, has_stop, known.as_ref());
+        let settings = SessionSettings { plotter, baud: config.serial.baud, ..SessionSettings::default() };
+        let targets = known.as_ref().map_or(0, |known| known.table.plan().targets);
+        let has_drawing = known.is_some();
+        let session = Session::hosted(line, host, known.map(|known| known.table), Some(recording), settings);
+        let state = self.watch_lines(&session, page, machine, &name, area_mm, out)?;
+        say(out, &format!("wrote {}", self.output.display()));
+        match state {
+            State::Failed(why) => {
+                Err(format!("{why}; the recording up to here is in {}", self.output.display()))
+            }
+            _ => {
+                let done = session.reached();
+                if has_drawing {
+                    say(out, &format!("operations: {done} of {targets} drawn"));
+                }
+                Ok(if done < targets { Verdict::Found } else { verdict })
+            }
+        }
+    }
+
+    fn watch_lines(
+        &self,
+        session: &Session,
+        page: LivePage,
+        machine: &Machine,
+        port: &str,
+        area_mm: [f64; 4],
+        out: &mut impl Write,
+    ) -> Result<State, String> {
+        let is_begun = core::cell::Cell::new(!self.start);
+        let begin = || {
+            if !is_begun.get() && session.state() == State::Ready {
+                is_begun.set(true);
+                session.command(Command::Start);
+            }
+        };
+        if self.terminal {
+            let name = machine.config().name.as_str();
+            let is_simulated = self.port.is_none();
+            let machine = if is_simulated {
+                format!("{name}: no motor turns, at up to {} times its time", self.speed)
+            } else {
+                format!("on {port}, taken for a {name}")
+            };
+            let heading = terminal::Heading { machine, is_simulated, area_mm };
+            while !is_begun.get() && !session.wait(LOOK_EVERY).is_final() {
+                begin();
+            }
+            let quit = terminal::run(session, &heading).map_err(|error| format!("terminal: {error}"))?;
+            return Ok(if quit { session.state() } else { session.wait(LAST_LOOK) });
+        }
+        let about = page.about.clone();
+        let server = Server::open(session.clone(), self.http_port, |sources| page.finish(area_mm, sources))
+            .map_err(|error| error.to_string())?;
+        say(out, &about);
+        say(out, &format!("look at {}", server.address()));
+        let _ = out.flush(); // who closed it has seen enough: the machine goes on
+        let mut told = State::Connecting;
+        let state = loop {
+            let state = session.wait(LOOK_EVERY);
+            begin(); // only now: nothing moves that cannot be watched and stopped
+            if state.is_final() {
+                break state;
+            }
+            if state != told && matches!(state, State::Paused | State::Stopped | State::Locked) {
+                say(out, &format!("{}: see the page", state.name()));
+                let _ = out.flush();
+            }
+            told = state;
+        };
+        let until = Instant::now() + LAST_LOOK;
+        while server.connections() > 0 && Instant::now() < until {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        Ok(state)
+    }
+
+    /// Goes through a drawing once: what of it cannot be read, whether the machine reaches all of it, how long
+    /// it takes.
+    fn look_at(
+        &self,
+        drawing: &DrawingFile,
+        machine: &Machine,
+        page: &mut LivePage,
+        out: &mut impl Write,
+    ) -> Result<Known, String> {
+        let path = self.drawing.as_deref().unwrap_or_else(|| std::path::Path::new("-")).display();
+        let config = machine.config();
+        let mut table = Timetable::new(machine).map_err(|error| error.to_string())?;
+        let (mut mark, mut errors, mut first) = (DrawingMark::default(), 0_u64, Vec::new());
+        let (mut at, mut pen) = (Point::ORIGIN, 1);
+        for item in drawing.ops(config.x.counts_per_mm)? {
+            let op = match item {
+                Ok(op) => op,
+                Err(error) => {
+                    errors = errors.saturating_add(1);
+                    if first.len() < 20 {
+                        first.push(error);
+                    }
+                    continue;
+                }
+            };
+            table.push(op);
+            if let PlotOp::SelectPen { pen: number } = op {
+                pen = number.max(1);
+            }
+            if let Some(to) = op.target() {
+                page.push_op(at, op, pen);
+                at = to;
+                let down = if matches!(op, PlotOp::Travel { .. }) { Pen::Up } else { Pen::Down };
+                // (a thousandth of a millimetre tells one drawing from another)
+                mark.push(PenMove {
+                    pen: down,
+                    ..PenMove::from_op(PlotOp::Travel { to }, 1e3).unwrap_or_default()
+                });
+            }
+        }
+        if errors > 0 {
+            say(out, &format!("{path}: {errors} errors, left out"));
+            say_first(out, &first, errors);
+        }
+        if mark.moves == 0 {
+            return Err(format!("{path}: there is nothing in it that this machine could draw"));
+        }
+        let [x0, y0, x1, y1] = page.area_mm().unwrap_or_default();
+        let within = |least: f64, most: f64, size: f64| least >= -0.001 && most <= size + 0.001;
+        if !(within(x0, x1, config.area.width_mm) && within(y0, y1, config.area.height_mm)) {
+            return Err(format!(
+                "{path}: it goes from ({x0:.1}, {y0:.1}) to ({x1:.1}, {y1:.1}) mm, and the machine from (0, 0) to ({}, {}) mm: \
+                 move or scale it (`plotter convert --fit`)",
+                config.area.width_mm, config.area.height_mm
+            ));
+        }
+        let total = table.finish();
+        page.takes(total);
+        Ok(Known { table, mark, errors })
+    }
+
+    /// Where an earlier host left the drawing: operations done, and sent at most.
+    fn left(&self, known: Option<&Known>) -> Result<Option<(u64, u64)>, String> {
+        let Some(path) = &self.resume else { return Ok(None) };
+        let refused = |error: &dyn core::fmt::Display| format!("{}: {error}", path.display());
+        if *path == self.output {
+            return Err(refused(&"this log is read for --resume: give another one with -o"));
+        }
+        let reader = log::open(path).map_err(|error| refused(&error))?;
+        let number = |key| reader.header().number(key);
+        let wanted = known.map(|known| known.mark);
+        #[expect(clippy::cast_precision_loss, reason = "below 2^53")]
+        let is_other = wanted.is_some_and(|mark| {
+            number("drawing_moves").is_some_and(|moves| moves != mark.moves as f64)
+                || number("drawing_check").is_some_and(|check| check != f64::from(mark.check))
+        });
+        if is_other {
+            return Err(refused(&"it was another drawing that this host was sending"));
+        }
+        let mut left = None;
+        for record in reader.filter_map(Result::ok) {
+            if let Event::Note(words) = &record.event
+                && let Some(numbers) = words.strip_prefix(crate::live::MARK)
+                && let Some((done, sent)) = numbers.split_once(' ')
+                && let (Ok(done), Ok(sent)) = (done.parse::<u64>(), sent.parse::<u64>())
+            {
+                left = Some((done, sent));
+            }
+        }
+        // Behind the last note it may have sent as many as a queue holds.
+        left.map(|(done, sent)| Some((done, sent.saturating_add(64))))
+            .ok_or_else(|| refused(&"no host says in it how far the drawing was: begin the drawing anew"))
+    }
+
+    fn lines_writer(
+        &self,
+        machine: &Machine,
+        tongue: Tongue,
+        known: Option<&Known>,
+        clock: &str,
+    ) -> Result<log::FileWriter, String> {
+        let protocol = if tongue == Tongue::MDraw { "mdraw" } else { "grbl" };
+        let header = lines_header(machine, protocol).with_text("clock", clock);
+        let header = known.map_or(header.clone(), |known| known.mark.written_to(header));
+        log::create(&self.output, &header).map_err(|error| format!("{}: {error}", self.output.display()))
+    }
+
+    fn describe_lines(
+        &self,
+        page: &mut LivePage,
+        machine: &Machine,
+        tongue: Tongue,
+        port: &str,
+        has_stop: bool,
+        known: Option<&Known>,
+    ) {
+        let config = machine.config();
+        page.is_simulated = self.port.is_none();
+        page.has_hand = true;
+        page.about = if page.is_simulated {
+            format!("{} is SIMULATED: no motor turns, at up to {} times its time.", config.name, self.speed)
+        } else {
+            format!("The machine on {port} speaks {tongue} and is taken for a {}.", config.name)
+        };
+        page.stops = String::from(if has_stop {
+            "The stop sends the byte 0x18 at once, past all lines: the controller stops its motors and forgets what it was \
+             sent. Resume unlocks it and lifts the pen; Resume again goes on with the drawing where it was stopped."
+        } else {
+            "This machine's language has NO emergency stop: the button sends nothing more, and the line under way is drawn to \
+             its end. Keep your hand at the machine's own switch."
+        });
+        let fact = |name: &str, value: String| (name.to_owned(), value);
+        page.facts = vec![
+            fact("port", port.to_owned()),
+            fact("language", tongue.to_string()),
+            fact("baud", config.serial.baud.to_string()),
+            fact("area", format!("{} × {} mm", config.area.width_mm, config.area.height_mm)),
+            fact("recording", self.output.display().to_string()),
+        ];
+        if let Some(known) = known {
+            let plan = known.table.plan();
+            page.facts.push(fact(
+                "drawing",
+                format!("{} operations, {:.2} m of way", plan.targets, plan.way_mm / 1e3),
+            ));
+        }
+    }
+}
+
+/// Which language the machine on a port speaks.
+fn find_tongue(line: &PortLine, name: &str, out: &mut impl Write) -> Result<Tongue, String> {
+    say(out, &format!("{name}: which language does the machine speak? (--protocol says it)"));
+    let _ = out.flush();
+    let began = Instant::now();
+    let mut finder = Finder::new(Duration::ZERO);
+    let mut bytes = [0; 256];
+    loop {
+        match finder.poll(began.elapsed()) {
+            Finding::Found(tongue) => return Ok(tongue),
+            Finding::Send(question) => line.send(question).map_err(|error| error.to_string())?,
+            Finding::Nothing => {
+                return Err(format!(
+                    "{name}: nothing that is there answers in a language known here: is the machine on, its baud rate right, \
+                     and no other program at the port? --protocol says which language it is"
+                ));
+            }
+            Finding::Until(_) => {
+                let count =
+                    line.receive(&mut bytes, Duration::from_millis(50)).map_err(|error| error.to_string())?;
+                bytes.get(..count).unwrap_or_default().iter().for_each(|&byte| finder.receive(byte));
+            }
+        }
+    }
+}

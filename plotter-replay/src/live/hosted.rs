@@ -1,0 +1,341 @@
+//! [`HostedEngine`]: the loop of a session with a machine that is led by lines of text.
+
+use super::line::lock;
+use super::machine_log::Recording;
+use super::session::Shared;
+use super::timetable::Timetable;
+use super::{Command, Hand, State};
+use crate::log::{Event, Record};
+use crate::serial::PortError;
+use core::time::Duration;
+use plotter_motion::protocol::Wire;
+use plotter_motion::protocol::hosts::{HostState, MachineHost, MachineNotice, NotNow, Request};
+use plotter_motion::toolpath::{circle, rectangle};
+use plotter_motion::{Pen, PlotOp};
+use std::collections::VecDeque;
+use std::io::Write;
+use std::time::Instant;
+
+/// Longest time for which the line is listened to at once, in its time; so long ahead it takes bytes.
+const LISTEN: Duration = Duration::from_millis(2);
+/// How often the place is sampled, by the clock.
+const SAMPLE_EVERY: Duration = Duration::from_millis(20);
+/// How often the recording says how far the drawing is, in the line's time: with it another host goes on.
+const MARK_EVERY: Duration = Duration::from_millis(100);
+/// Operations by hand that wait: a circle of ten thousand points, and more.
+const MOST_BY_HAND: usize = 20_000;
+
+pub(super) struct HostedEngine<'a, W: Write> {
+    host: Box<dyn MachineHost + Send>,
+    drawing: Option<Timetable>,
+    recorder: Option<Recording<W>>,
+    began: Instant,
+    sampled: Option<Instant>,
+    last: Duration,
+    wire: Wire,
+    free: Duration,
+    by_hand: VecDeque<PlotOp>,
+    /// Time in which it was drawn, and since when it is.
+    drawn: Duration,
+    draws_since: Option<Duration>,
+    marked: (Duration, u64, u64),
+    shared: &'a Shared,
+}
+
+impl<'a, W: Write> HostedEngine<'a, W> {
+    pub(super) fn new(
+        host: Box<dyn MachineHost + Send>,
+        drawing: Option<Timetable>,
+        recorder: Option<Recording<W>>,
+        baud: u32,
+        shared: &'a Shared,
+    ) -> Self {
+        Self {
+            host,
+            drawing,
+            recorder,
+            began: Instant::now(),
+            sampled: None,
+            last: Duration::ZERO,
+            wire: Wire::new(baud),
+            free: Duration::ZERO,
+            by_hand: VecDeque::new(),
+            drawn: Duration::ZERO,
+            draws_since: None,
+            marked: (Duration::ZERO, 0, 0),
+            shared,
+        }
+    }
+
+    /// Until the drawing is done, the line fails, or the program ends. All times are the line's.
+    pub(super) fn run(mut self) {
+        let end = loop {
+            match self.round() {
+                Ok(None) => {}
+                Ok(Some(end)) => break end,
+                Err(error) => break State::Failed(error.to_string()),
+            }
+        };
+        if let State::Failed(why) = &end {
+            self.take(Event::Note(format!("the session failed: {why}")));
+        }
+        self.mark(true);
+        let now = self.now();
+        let kept = self.recorder.take().map(|recorder| recorder.finish());
+        let mut view = lock(&self.shared.view);
+        match kept {
+            Some(Err(error)) => view.recording = format!("stopped: {error}"),
+            Some(Ok(())) => view.recording = String::from("complete"),
+            None => {}
+        }
+        view.sample(now);
+        view.state = end;
+        self.shared.finished.notify_all();
+    }
+
+    fn now(&self) -> Duration {
+        self.shared.line.now().unwrap_or_else(|| self.began.elapsed())
+    }
+
+    /// Once round: commands, host, line. The end, if that is it.
+    fn round(&mut self) -> Result<Option<State>, PortError> {
+        self.obey();
+        let now = self.now();
+        while let Some(notice) = self.host.poll(now) {
+            self.notice(now, notice);
+        }
+        self.draw_by_hand(now);
+        self.send(now)?;
+        let wake = self.host.next_wake().map_or(LISTEN, |wake| wake.saturating_sub(now)).min(LISTEN);
+        let mut bytes = [0; 1_024];
+        let count = self.shared.line.receive(&mut bytes, wake.max(Duration::from_micros(200)))?;
+        let bytes = bytes.get(..count).unwrap_or_default();
+        if !bytes.is_empty() {
+            self.take(Event::Controller(bytes.to_vec()));
+            let now = self.now();
+            bytes.iter().for_each(|&byte| self.host.receive(now, byte));
+        }
+        self.look();
+        Ok((self.host.status().state == HostState::Done).then_some(State::Done))
+    }
+
+    fn send(&mut self, now: Duration) -> Result<(), PortError> {
+        let shared = self.shared;
+        let stop_is_new = lock(&shared.stop_is_new);
+        if *stop_is_new {
+            return Ok(()); // nothing older goes out behind a stop
+        }
+        let mut out = Vec::new();
+        while self.free <= now.saturating_add(LISTEN) {
+            let Some(byte) = self.host.next_byte(now) else { break };
+            self.free = self.wire.send(now);
+            out.push(byte);
+        }
+        if !out.is_empty() {
+            shared.line.send(&out)?;
+            self.take(Event::Host(out));
+        }
+        Ok(())
+    }
+
+    fn obey(&mut self) {
+        loop {
+            let Some(command) = lock(&self.shared.commands).pop_front() else { return };
+            let now = self.now();
+            let done = match command {
+                Command::Clear => {
+                    lock(&self.shared.view).clear();
+                    Ok(())
+                }
+                Command::Start | Command::Resume => match self.host.status().state {
+                    // A resume after a stop is the word that the machine may be unlocked.
+                    HostState::Stopped if command == Command::Resume => self.host.ask(now, Request::Unlock),
+                    HostState::Ready if self.drawing.is_none() => Err(NotNow::Nothing),
+                    _ => self.host.ask(now, Request::GoOn),
+                },
+                Command::Pause => self.host.ask(now, Request::Pause),
+                Command::Stop => {
+                    self.by_hand.clear();
+                    *lock(&self.shared.stop_is_new) = false;
+                    let bytes = self.shared.stop_bytes().to_vec();
+                    if !bytes.is_empty() {
+                        self.take(Event::Host(bytes));
+                    }
+                    self.host.ask(now, Request::Stop)
+                }
+                Command::Hand(hand) => self.hand(now, hand),
+            };
+            if let Err(why) = done {
+                lock(&self.shared.view).message(now, why.to_string());
+            }
+        }
+    }
+
+    fn hand(&mut self, now: Duration, hand: Hand) -> Result<(), NotNow> {
+        let here = self.host.status().at.unwrap_or_default();
+        let speed = |mm_s: f64| (mm_s > 0.0).then_some(mm_s);
+        let draws: Vec<PlotOp> = match hand {
+            Hand::Next => return self.host.ask(now, Request::Next),
+            Hand::Jog(by, feed_mm_s) => return self.host.ask(now, Request::Jog { by, feed_mm_s }),
+            Hand::EndJog => return self.host.ask(now, Request::EndJog),
+            Hand::GoTo(to) => vec![PlotOp::Travel { to }],
+            Hand::Pen(Pen::Up) => vec![PlotOp::Travel { to: here }],
+            Hand::Pen(Pen::Down) => vec![PlotOp::Draw { to: here, feed_mm_s: None }],
+            Hand::PenDownAt(number) => return self.host.ask(now, Request::PenDownAt(number)),
+            Hand::Home => return self.host.ask(now, Request::Home),
+            Hand::Unlock => return self.host.ask(now, Request::Unlock),
+            Hand::StandsAt(place) => return self.host.ask(now, Request::StandsAt(place)),
+            Hand::Feed(percent) => return self.host.ask(now, Request::Feed { percent }),
+            Hand::Line(from, to, mm_s) => {
+                vec![PlotOp::Travel { to: from }, PlotOp::Draw { to, feed_mm_s: speed(mm_s) }]
+            }
+            Hand::Rectangle(at, size, mm_s) => {
+                let sides = rectangle(at, size.x, size.y).map(|op| with_speed(op, speed(mm_s)));
+                sides.collect()
+            }
+            Hand::Circle(at, radius_mm, points, mm_s) => {
+                let chords = circle(at, radius_mm, points.into()).map(|op| with_speed(op, speed(mm_s)));
+                chords.collect()
+            }
+        };
+        if self.by_hand.len().saturating_add(draws.len()) > MOST_BY_HAND {
+            return Err(NotNow::Busy);
+        }
+        // What cannot be begun is not kept for later: nothing moves unasked.
+        let mut draws = draws.into_iter();
+        if let Some(first) = draws.next().filter(|_| self.by_hand.is_empty()) {
+            self.host.ask(now, Request::ByHand(first))?;
+            self.by_hand.extend(draws);
+        }
+        Ok(())
+    }
+
+    /// Goes on with a shape as the host has room.
+    fn draw_by_hand(&mut self, now: Duration) {
+        while let Some(&op) = self.by_hand.front() {
+            match self.host.ask(now, Request::ByHand(op)) {
+                Ok(()) => {
+                    self.by_hand.pop_front();
+                    if self.by_hand.is_empty() {
+                        let to = op.target().unwrap_or_default();
+                        let _ = self.host.ask(now, Request::ByHand(PlotOp::Travel { to })); // lifted at its end
+                    }
+                }
+                Err(NotNow::Busy) => return,
+                Err(why) => {
+                    self.by_hand.clear();
+                    lock(&self.shared.view).message(now, why.to_string());
+                }
+            }
+        }
+    }
+
+    fn notice(&mut self, now: Duration, notice: MachineNotice) {
+        if let MachineNotice::State(state) = notice {
+            self.follow(now, state);
+        }
+        let words = notice.to_string();
+        lock(&self.shared.view).message(now, words.clone());
+        self.take(Event::Note(format!("host: {words}")));
+    }
+
+    fn follow(&mut self, now: Duration, state: HostState) {
+        let draws = matches!(state, HostState::Drawing | HostState::Ending);
+        match (draws, self.draws_since) {
+            (true, None) => self.draws_since = Some(now),
+            (false, Some(since)) => {
+                self.drawn = self.drawn.saturating_add(now.saturating_sub(since));
+                self.draws_since = None;
+            }
+            _ => {}
+        }
+        let mut view = lock(&self.shared.view);
+        let wants = match state {
+            HostState::PenWanted(_) | HostState::SheetWanted | HostState::Locked(_) | HostState::Stopped => {
+                MachineNotice::State(state).to_string()
+            }
+            _ => String::new(),
+        };
+        if let Some(hosted) = &mut view.hosted {
+            hosted.wants = wants;
+        }
+        view.state = match state {
+            HostState::Unheard => State::Connecting,
+            HostState::Ready if self.drawing.is_none() => State::Watching,
+            HostState::Ready => State::Ready,
+            HostState::Drawing | HostState::Ending | HostState::Done => State::Running,
+            HostState::Homing => State::Homing,
+            HostState::Stopped => State::Stopped,
+            HostState::Locked(_) => State::Locked,
+            _ => State::Paused,
+        };
+    }
+
+    /// Something happened: on the screen, and into the recording.
+    fn take(&mut self, event: Event) {
+        self.last = self.now().max(self.last);
+        let record = Record { time: self.last, event };
+        let mut view = lock(&self.shared.view);
+        view.push(&record);
+        if let Some(recorder) = &mut self.recorder
+            && let Err(error) = recorder.write(&record)
+        {
+            // The drawing goes on; what was written stays.
+            view.recording = format!("stopped: {error}");
+            view.message(record.time, format!("recording stopped, drawing goes on: {error}"));
+            self.recorder = None;
+        }
+    }
+
+    /// Says in the recording how far the drawing is, so that another host can go on with it.
+    fn mark(&mut self, at_once: bool) {
+        let (now, status) = (self.now(), self.host.status());
+        let (marked, done, sent) = self.marked;
+        let is_due = at_once || now.saturating_sub(marked) >= MARK_EVERY;
+        if is_due && (done, sent) != (status.done, status.sent) {
+            self.marked = (now, status.done, status.sent);
+            self.take(Event::Note(format!("{MARK}{} {}", status.done, status.sent)));
+        }
+    }
+
+    /// Now and then: a sample of the place, and the recording written through.
+    fn look(&mut self) {
+        let clock = Instant::now();
+        if self.sampled.is_some_and(|last| clock.saturating_duration_since(last) < SAMPLE_EVERY) {
+            return;
+        }
+        self.sampled = Some(clock);
+        self.mark(false);
+        let (now, status) = (self.now(), self.host.status());
+        let since = self.draws_since.map_or(Duration::ZERO, |since| now.saturating_sub(since));
+        let drawn = self.drawn.saturating_add(since);
+        let mut view = lock(&self.shared.view);
+        view.done.targets = status.done;
+        view.reached = status.done;
+        let rest = self.drawing.as_ref().filter(|_| !drawn.is_zero());
+        let rest = rest.map(|table| table.rest(status.done, drawn));
+        if let Some(hosted) = &mut view.hosted {
+            hosted.at = status.at;
+            hosted.is_down = status.pen == Pen::Down;
+            hosted.feed_percent = status.feed_percent;
+            hosted.rest = rest;
+        }
+        view.sample(now);
+        if let Some(recorder) = &mut self.recorder
+            && let Err(error) = recorder.tick(now)
+        {
+            view.recording = format!("stopped: {error}");
+            self.recorder = None;
+        }
+    }
+}
+
+/// Before the numbers of operations done and sent, in a note of a recording.
+pub(crate) const MARK: &str = "host: operations done and sent: ";
+
+fn with_speed(op: PlotOp, mm_s: Option<f64>) -> PlotOp {
+    match op {
+        PlotOp::Draw { to, .. } => PlotOp::Draw { to, feed_mm_s: mm_s },
+        other => other,
+    }
+}

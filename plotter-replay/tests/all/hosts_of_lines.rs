@@ -1,0 +1,313 @@
+//! Hosts of machines that answer lines, each with a simulated machine at the other end.
+
+use crate::driven::{Desk, drawing, planned};
+use plotter_motion::gcode::WriteOptions;
+use plotter_motion::protocol::hosts::{
+    Grbl, HostState, LineHost, LineHostSettings, MDraw, MachineHost, MachineNotice, NotNow, Request,
+};
+use plotter_motion::{Axis, Machine, MachineConfig, PlotOp, Point, Vec2};
+use plotter_replay::live::Spoken;
+use std::time::Duration;
+
+const LONG: Duration = Duration::from_secs(600);
+
+/// With room for the drawing, switches where homing finds them soon, and a pen that waits for nothing.
+fn machine() -> Machine {
+    let mut config = MachineConfig::stepper_plotter();
+    (config.area.width_mm, config.area.height_mm) = (60.0, 40.0);
+    (config.homing.known_travel_mm, config.homing.max_travel_mm) = (0.0, 80.0);
+    (config.homing.fast_rate_hz, config.homing.pull_off_mm) = (4_000.0, 1.0);
+    config.pen.settle_ms = 20.0;
+    Machine::new(config).unwrap()
+}
+
+type Ops = std::vec::IntoIter<PlotOp>;
+
+fn grbl(ops: Vec<PlotOp>) -> LineHost<Grbl<'static>, Ops> {
+    let options = WriteOptions { settle: Duration::ZERO, ..WriteOptions::default() };
+    LineHost::new(Grbl::new(options), LineHostSettings::default(), ops.into_iter())
+}
+
+fn mdraw(ops: Vec<PlotOp>) -> LineHost<MDraw<'static>, Ops> {
+    LineHost::new(MDraw::new("M1 160", "M1 90"), LineHostSettings::default(), ops.into_iter())
+}
+
+fn is_whole(notices: &[MachineNotice]) -> bool {
+    notices.iter().all(|notice| matches!(notice, MachineNotice::State(_) | MachineNotice::Greeted))
+}
+
+#[test]
+fn a_drawing_on_a_grbl_machine_is_the_steps_of_the_plan() {
+    let machine = machine();
+    let mut desk = Desk::new(grbl(drawing()), &machine, Spoken::Grbl, "");
+    assert_eq!(desk.until(&[HostState::Ready], LONG), HostState::Ready);
+    desk.ask(Request::GoOn);
+    assert_eq!(desk.until(&[HostState::Done], LONG), HostState::Done);
+    assert!(is_whole(&desk.notices), "{:?}", desk.notices);
+    let status = desk.host.status();
+    assert_eq!((status.sent, status.done), (drawing().len() as u64, drawing().len() as u64));
+    assert_eq!(status.limits.steps_per_mm, [Some(87.58), Some(87.58)]);
+    let (made, wanted) = (desk.steps(), planned(&machine, &drawing()));
+    assert!(made == wanted, "{} steps, {} planned", made.len(), wanted.len());
+}
+
+#[test]
+fn a_drawing_on_an_mdraw_machine_ends_where_it_should() {
+    let machine = machine();
+    let mut desk = Desk::new(mdraw(drawing()), &machine, Spoken::MDraw, "");
+    assert_eq!(desk.until(&[HostState::Ready], LONG), HostState::Ready);
+    desk.ask(Request::GoOn);
+    assert_eq!(desk.until(&[HostState::Done], LONG), HostState::Done);
+    // (an arc is no word of mDraw's: its line is answered as any other)
+    let lost: Vec<_> = desk.notices.iter().filter(|n| !matches!(n, MachineNotice::State(_))).collect();
+    assert!(lost.is_empty(), "{lost:?}");
+    assert_eq!(desk.host.status().at.map(|at| at.distance(Point::new(4.0, 4.0)) < 0.02), Some(true));
+}
+
+/// Pauses and goes on at so many places that each part of the drawing is met.
+fn assert_pauses_lose_nothing<H: MachineHost>(mut desk: Desk<H>, every: Duration, least_pauses: usize) {
+    let machine = machine();
+    desk.until(&[HostState::Ready], LONG);
+    desk.ask(Request::GoOn);
+    let mut pauses = 0;
+    loop {
+        let state = desk.until(&[HostState::Done], every);
+        match state {
+            HostState::Done => break,
+            HostState::Drawing | HostState::Ending => {
+                desk.ask(Request::Pause);
+                assert!(matches!(
+                    desk.until(&[HostState::Paused, HostState::Done], LONG),
+                    HostState::Paused | HostState::Done
+                ));
+                if desk.host.status().state == HostState::Done {
+                    break;
+                }
+                pauses += 1;
+                assert!(pauses < 300, "it comes no further: {:?}", desk.host.status());
+                assert_eq!(desk.host.status().pen, plotter_motion::Pen::Up);
+                if pauses % 3 == 0 {
+                    desk.ask(Request::Jog { by: Vec2::new(3.0, 2.0), feed_mm_s: 30.0 });
+                    desk.wait(Duration::from_millis(400));
+                }
+                desk.ask(Request::GoOn);
+            }
+            other => panic!("{other:?}: {:?}", desk.notices),
+        }
+    }
+    assert!(pauses >= least_pauses, "{pauses} pauses");
+    let wrong: Vec<_> = desk
+        .notices
+        .iter()
+        .filter(|n| !matches!(n, MachineNotice::State(_) | MachineNotice::Greeted))
+        .collect();
+    assert!(wrong.is_empty(), "{wrong:?}");
+    // The same ink, within a step: a line that is drawn in two parts has other roundings in it.
+    let plain = {
+        let mut desk = Desk::new(grbl(drawing()), &machine, Spoken::Grbl, "");
+        desk.until(&[HostState::Ready], LONG);
+        desk.ask(Request::GoOn);
+        desk.until(&[HostState::Done], LONG);
+        desk.ink()
+    };
+    let ink = desk.ink();
+    let near = |set: &std::collections::BTreeSet<(i32, i32)>, (x, y): (i32, i32)| {
+        (-2..=2).any(|dx| (-2..=2).any(|dy| set.contains(&(x + dx, y + dy))))
+    };
+    let (extra, lost) = (
+        ink.iter().filter(|at| !near(&plain, **at)).count(),
+        plain.iter().filter(|at| !near(&ink, **at)).count(),
+    );
+    assert_eq!((extra, lost), (0, 0), "of {} places", plain.len());
+}
+
+#[test]
+fn pauses_on_a_grbl_machine_lift_the_pen_at_once_and_cost_no_ink() {
+    let desk = Desk::new(grbl(drawing()), &machine(), Spoken::Grbl, "");
+    assert_pauses_lose_nothing(desk, Duration::from_millis(330), 15);
+}
+
+#[test]
+fn a_pause_is_there_within_the_braking_and_not_behind_the_queue() {
+    let far = |n: u32| PlotOp::Draw {
+        to: Point::new(if n % 2 == 0 { 1.0 } else { 59.0 }, f64::from(n)),
+        feed_mm_s: Some(5.0),
+    };
+    let mut desk = Desk::new(grbl((0..12).map(far).collect()), &machine(), Spoken::Grbl, "");
+    desk.until(&[HostState::Ready], LONG);
+    desk.ask(Request::GoOn);
+    desk.wait(Duration::from_secs(3));
+    let asked = desk.now();
+    desk.ask(Request::Pause);
+    assert_eq!(desk.until(&[HostState::Paused], LONG), HostState::Paused);
+    assert!(desk.now() - asked < Duration::from_millis(600), "{:?}", desk.now() - asked);
+    let last = desk
+        .events()
+        .iter()
+        .filter(|(_, event)| matches!(event, plotter_replay::log::Event::Edge { .. }))
+        .map(|e| e.0)
+        .max();
+    assert!(last.unwrap() - asked < Duration::from_millis(100), "{:?}", last.unwrap() - asked);
+}
+
+#[test]
+fn a_stop_stops_the_motors_and_the_drawing_goes_on_where_it_was() {
+    let mut desk = Desk::new(grbl(drawing()), &machine(), Spoken::Grbl, "");
+    desk.until(&[HostState::Ready], LONG);
+    desk.ask(Request::GoOn);
+    desk.wait(Duration::from_millis(1_300));
+    assert_eq!(desk.host.status().state, HostState::Drawing);
+    desk.stop();
+    desk.wait(Duration::from_millis(600));
+    assert!(
+        matches!(desk.host.status().state, HostState::Stopped | HostState::Locked(_)),
+        "{:?}",
+        desk.host.status()
+    );
+    let now = desk.now();
+    assert_eq!(desk.host.ask(now, Request::GoOn), Err(NotNow::Locked));
+    desk.ask(Request::Unlock);
+    assert_eq!(desk.until(&[HostState::Paused], LONG), HostState::Paused);
+    desk.ask(Request::GoOn);
+    assert_eq!(desk.until(&[HostState::Done], LONG), HostState::Done);
+    assert_eq!(desk.host.status().at.map(|at| at.distance(Point::new(4.0, 4.0)) < 0.02), Some(true));
+}
+
+#[test]
+fn another_pen_and_another_sheet_are_waited_for() {
+    let square = |at: f64| {
+        let draw = |x: f64, y: f64| PlotOp::Draw { to: Point::new(x, y), feed_mm_s: None };
+        [
+            PlotOp::Travel { to: Point::new(at, at) },
+            draw(at + 2.0, at),
+            draw(at + 2.0, at + 2.0),
+            draw(at, at),
+        ]
+    };
+    let mut ops = vec![PlotOp::SelectPen { pen: 1 }];
+    ops.extend(square(2.0));
+    ops.push(PlotOp::SelectPen { pen: 3 });
+    ops.extend(square(6.0));
+    ops.push(PlotOp::NewPage);
+    ops.extend(square(10.0));
+    for spoken in [Spoken::Grbl, Spoken::MDraw] {
+        let host: Box<dyn MachineHost> =
+            if spoken == Spoken::Grbl { Box::new(grbl(ops.clone())) } else { Box::new(mdraw(ops.clone())) };
+        let mut desk = Desk::new(Boxed(host), &machine(), spoken, "");
+        desk.until(&[HostState::Ready], LONG);
+        let waits = [HostState::PenWanted(3), HostState::SheetWanted, HostState::Done];
+        for wanted in waits {
+            desk.ask(Request::GoOn);
+            assert_eq!(desk.until(&waits, LONG), wanted, "{spoken:?}");
+            desk.wait(Duration::from_millis(100));
+            assert_eq!(desk.host.status().state, wanted);
+        }
+    }
+}
+
+/// A host of any language.
+struct Boxed(Box<dyn MachineHost>);
+
+impl MachineHost for Boxed {
+    fn poll(&mut self, now: Duration) -> Option<MachineNotice> {
+        self.0.poll(now)
+    }
+    fn next_byte(&mut self, now: Duration) -> Option<u8> {
+        self.0.next_byte(now)
+    }
+    fn receive(&mut self, now: Duration, byte: u8) {
+        self.0.receive(now, byte);
+    }
+    fn next_wake(&self) -> Option<Duration> {
+        self.0.next_wake()
+    }
+    fn ask(&mut self, now: Duration, request: Request) -> Result<(), NotNow> {
+        self.0.ask(now, request)
+    }
+    fn stop_bytes(&self) -> &'static [u8] {
+        self.0.stop_bytes()
+    }
+    fn status(&self) -> plotter_motion::protocol::hosts::HostStatus {
+        self.0.status()
+    }
+}
+
+#[test]
+fn a_killed_host_s_drawing_goes_on_at_the_place_where_the_machine_rests() {
+    for seconds in [0.4, 0.9, 1.7, 2.6] {
+        let mut desk = Desk::new(grbl(drawing()), &machine(), Spoken::Grbl, "");
+        desk.until(&[HostState::Ready], LONG);
+        desk.ask(Request::GoOn);
+        desk.wait(Duration::from_secs_f64(seconds));
+        let status = desk.host.status();
+        // It is killed; what is on the line is drawn.
+        let mut desk = desk.with(grbl(drawing()).resuming(status.done, status.sent + 8));
+        assert_eq!(desk.until(&[HostState::Paused], LONG), HostState::Paused);
+        desk.ask(Request::GoOn);
+        assert_eq!(desk.until(&[HostState::Done], LONG), HostState::Done, "{:?}", desk.notices);
+        let wrong = desk
+            .notices
+            .iter()
+            .filter(|n| matches!(n, MachineNotice::NotResumed { .. } | MachineNotice::Elsewhere { .. }));
+        assert_eq!(wrong.count(), 0, "{:?}", desk.notices);
+    }
+}
+
+#[test]
+fn a_machine_that_restarts_or_alarms_is_said_and_nothing_moves_until_asked() {
+    // switched off and on
+    let mut desk = Desk::new(grbl(drawing()), &machine(), Spoken::Grbl, "2.0 restart");
+    desk.until(&[HostState::Ready], LONG);
+    desk.ask(Request::GoOn);
+    desk.wait(Duration::from_secs(4));
+    assert!(desk.notices.iter().any(|n| matches!(n, MachineNotice::Restarted { .. })), "{:?}", desk.notices);
+    assert!(matches!(desk.host.status().state, HostState::Stopped | HostState::Locked(_)));
+    let last = desk
+        .events()
+        .iter()
+        .filter(|(_, e)| matches!(e, plotter_replay::log::Event::Edge { .. }))
+        .map(|e| e.0)
+        .max();
+    assert!(last.unwrap() <= Duration::from_millis(2_001), "{last:?}");
+}
+
+#[test]
+fn a_machine_that_says_nothing_is_said_to_be_silent_and_is_asked_no_more_than_that() {
+    let mut host = grbl(drawing());
+    let mut bytes = 0;
+    let mut notices = Vec::new();
+    for ms in 0..20_000_u64 {
+        let now = Duration::from_millis(ms);
+        notices.extend(core::iter::from_fn(|| host.poll(now)));
+        while let Some(byte) = host.next_byte(now) {
+            assert_eq!(byte, b'?');
+            bytes += 1;
+        }
+    }
+    assert_eq!(notices, [MachineNotice::Silent]);
+    assert!((80..=95).contains(&bytes), "{bytes}"); // five a second behind the first two
+    assert_eq!(host.ask(Duration::from_secs(20), Request::GoOn), Err(NotNow::Unheard));
+}
+
+#[test]
+fn a_jog_by_hand_moves_and_a_pen_is_lifted_and_lowered() {
+    let mut desk = Desk::new(grbl(Vec::new()), &machine(), Spoken::Grbl, "");
+    desk.until(&[HostState::Ready], LONG);
+    desk.ask(Request::Jog { by: Vec2::new(10.0, 5.0), feed_mm_s: 30.0 });
+    desk.wait(Duration::from_secs(1));
+    assert_eq!(desk.host.status().at.map(|at| at.distance(Point::new(10.0, 5.0)) < 0.01), Some(true));
+    desk.ask(Request::Jog { by: Vec2::new(40.0, 0.0), feed_mm_s: 10.0 });
+    desk.wait(Duration::from_millis(500));
+    desk.ask(Request::EndJog);
+    desk.wait(Duration::from_millis(600));
+    let at = desk.host.status().at.unwrap();
+    assert!(at.x > 12.0 && at.x < 20.0, "{at:?}");
+    desk.ask(Request::StandsAt(Point::new(1.0, 2.0)));
+    desk.wait(Duration::from_millis(500));
+    assert_eq!(desk.host.status().at.map(|at| at.distance(Point::new(1.0, 2.0)) < 1e-9), Some(true));
+    let (x, y) = desk.steps().iter().fold((0, 0), |(x, y), &(axis, sign)| match axis {
+        Axis::X => (x + sign, y),
+        Axis::Y => (x, y + sign),
+    });
+    assert!(x > 1_000 && y > 400, "{x} {y}");
+}
