@@ -174,6 +174,17 @@ impl<K: Kinematics> EbbMotion<K> {
         (self.samples, self.count, self.is_resting) = ([at; LONGEST_MS + 1], 0, false);
     }
 
+    /// Whether no event is left of what was pushed.
+    #[must_use]
+    pub fn is_idle(&self) -> bool {
+        self.phase.is_none() && !self.is_resting && self.next == Next::Nothing
+    }
+
+    /// Makes what follows of these commands.
+    pub const fn set_dialect(&mut self, dialect: EbbDialect) {
+        self.settings.dialect = dialect;
+    }
+
     /// Where the motors stand behind the last event.
     #[must_use]
     pub const fn made(&self) -> StepPoint {
@@ -198,7 +209,7 @@ impl<K: Kinematics> EbbMotion<K> {
     ///
     /// [`Busy`]: events of the action before are left.
     pub fn push(&mut self, action: Action) -> Result<(), Busy> {
-        if self.phase.is_some() || self.next != Next::Nothing || self.is_resting {
+        if !self.is_idle() {
             return Err(Busy);
         }
         match action {

@@ -10,11 +10,13 @@
 //! | host | machines | flow | place told | stop |
 //! |---|---|---|---|---|
 //! | [`Grbl`] | GRBL 1.1, GRBLHAL, `FluidNC` | bytes of its buffer | `?` | `0x18` |
+//! | [`EbbHost`] | AxiDraw, EggBot | a command at a time | `QS` | `ES` |
 //! | [`MDraw`] | Makeblock's XY plotter | a line at a time | `P` | none |
 //!
-//! All of them are [`LineHost`]s of a [`Language`]. A machine of the published digits, or of our link, has
+//! All of them but [`EbbHost`], which plans the motion itself, are [`LineHost`]s of a [`Language`]. A machine of the published digits, or of our link, has
 //! [`Host`](super::Host) and [`LinkHost`](super::LinkHost), whose targets are counts.
 
+mod ebb;
 mod finder;
 mod grbl;
 mod language;
@@ -26,6 +28,7 @@ mod ring;
 mod trail;
 mod words;
 
+pub use ebb::{EbbHost, EbbHostSettings};
 pub use finder::{Finder, Finding, Tongue};
 pub use grbl::Grbl;
 pub use language::{Answer, Doing, Language, OpText, Report};
