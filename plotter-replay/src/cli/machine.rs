@@ -69,6 +69,7 @@ pub(crate) fn simulated_header(machine: &Machine, spoken: crate::live::Spoken) -
         (Spoken::Link { boot }, _) => header_of(machine, "link", Some(boot)),
         (Spoken::Digits, _) => header_of(machine, "digits", None),
         (Spoken::Ebb { is_mixed }, _) => {
+            let config = machine.config();
             let header = Header::new()
                 .with_number("baud", config.serial.baud.into())
                 .with_text("protocol", "ebb")

@@ -22,6 +22,8 @@ mod golden_presets;
 #[cfg(feature = "live")]
 mod golden_simulated;
 #[cfg(feature = "live")]
+mod host_of_ebb;
+#[cfg(feature = "live")]
 mod hosts_of_lines;
 mod house;
 mod import;

@@ -130,6 +130,8 @@ pub struct EbbMotion<K> {
     made: StepPoint,
     pen: Pen,
     next: Next,
+    /// What comes behind a pen that is lifted for it.
+    after: Option<EbbEvent>,
     most_off: f64,
 }
 
@@ -157,6 +159,7 @@ impl<K: Kinematics> EbbMotion<K> {
             made: StepPoint::default(),
             pen: Pen::Up,
             next: Next::Nothing,
+            after: None,
             most_off: 0.0,
         };
         motion.stand_at(StepPoint::default());
@@ -170,7 +173,7 @@ impl<K: Kinematics> EbbMotion<K> {
         self.from = self.kinematics.point_at(at);
         self.at = self.from;
         self.course = Course { to: self.from, ..Course::default() };
-        (self.phase, self.due_s, self.next) = (None, MS, Next::Nothing);
+        (self.phase, self.due_s, self.next, self.after) = (None, MS, Next::Nothing, None);
         (self.samples, self.count, self.is_resting) = ([at; LONGEST_MS + 1], 0, false);
     }
 
@@ -232,8 +235,8 @@ impl<K: Kinematics> EbbMotion<K> {
                 let ms = u32::try_from(time.as_millis()).unwrap_or(u32::MAX);
                 self.rest_for(if ms == 0 { Next::Nothing } else { Next::Wait(ms) });
             }
-            Action::SelectPen(pen) => self.rest_for(Next::Event(EbbEvent::SelectPen(pen))),
-            Action::NewPage => self.rest_for(Next::Event(EbbEvent::NewPage)),
+            Action::SelectPen(pen) => self.rest_lifted(EbbEvent::SelectPen(pen)),
+            Action::NewPage => self.rest_lifted(EbbEvent::NewPage),
         }
         Ok(())
     }
@@ -242,6 +245,15 @@ impl<K: Kinematics> EbbMotion<K> {
     pub fn rest(&mut self) {
         if self.phase.is_none() && !self.is_resting {
             self.rest_for(Next::Nothing);
+        }
+    }
+
+    fn rest_lifted(&mut self, event: EbbEvent) {
+        if self.pen == Pen::Down {
+            self.rest_for(Next::Pen(Pen::Up));
+            self.after = Some(event);
+        } else {
+            self.rest_for(Next::Event(event));
         }
     }
 
@@ -296,6 +308,7 @@ impl<K: Kinematics> EbbMotion<K> {
                 Next::Nothing => {}
                 Next::Pen(pen) => {
                     self.pen = pen;
+                    self.next = self.after.take().map_or(Next::Nothing, Next::Event);
                     let settle = self.settings.pen_settle.as_millis();
                     let duration_ms = u16::try_from(settle).unwrap_or(u16::MAX);
                     return Some(EbbEvent::Command(EbbCommand::Pen { pen, duration_ms }));

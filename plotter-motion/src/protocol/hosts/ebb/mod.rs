@@ -129,6 +129,32 @@ enum Then {
 /// - No line has a checksum. At each lifting of the pen the board is asked for its count of steps, and what a
 ///   line did that came wrong is told ([`MachineNotice::Elsewhere`]), counted and taken back.
 /// - A line that the board refuses is sent again. After [`EbbHostSettings::silence`] an answer counts as lost.
+/// - By hand the machine moves at a tenth of the travel speed, 20 mm/s at most: at constant speed, as SM does.
+///
+/// ```
+/// # use plotter_motion::kinematics::{BeltSigns, CoreXy};
+/// # use plotter_motion::protocol::hosts::{EbbHost, EbbHostSettings, HostState, MachineHost, Request};
+/// # use plotter_motion::{PlotOp, Point};
+/// # use core::time::Duration;
+/// let axidraw = CoreXy::new(BeltSigns::TrackingEquations, 80.0)?;
+/// let drawing = [PlotOp::Travel { to: Point::new(0.0, 0.05) }];
+/// let mut host = EbbHost::new(axidraw, EbbHostSettings::default(), drawing.into_iter())?;
+/// let now = Duration::ZERO;
+/// let mut sent = String::new();
+/// let mut answer = |host: &mut EbbHost<_, _>, with: &[u8]| {
+///     host.poll(now);
+///     sent.extend(core::iter::from_fn(|| host.next_byte(now)).map(char::from));
+///     with.iter().for_each(|&byte| host.receive(now, byte));
+/// };
+/// answer(&mut host, b"EBBv13_and_above EB Firmware Version 2.8.1\r\n");
+/// (0..6).for_each(|_| answer(&mut host, b"OK\r\n"));
+/// assert_eq!(host.status().state, HostState::Ready);
+/// host.ask(now, Request::GoOn)?;
+/// (0..2).for_each(|_| answer(&mut host, b"OK\r\n"));
+/// // 4 steps of both motors within 15 ms
+/// assert!(sent.starts_with("V\rSC,4,12000\rSC,5,16000\rSC,11,400\rSC,12,400\rEM,1,1\rSP,1,200\rLM,"), "{sent}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct EbbHost<K, I> {
     settings: EbbHostSettings,
@@ -305,15 +331,12 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
             return;
         }
         let Some((command, made)) = self.next.take().or_else(|| self.next_command()) else { return };
-        if matches!(command, EbbCommand::Pen { .. }) && self.correction != StepPoint::default() {
-            // At a rest: what a damaged line did is taken back before the pen moves.
+        if matches!(command, EbbCommand::Pen { .. })
+            && let Some(back) = self.correction()
+        {
+            // At a rest, before the pen moves.
             self.next = Some((command, made));
-            let StepPoint { x, y } = core::mem::take(&mut self.correction);
-            let steps = x.unsigned_abs().max(y.unsigned_abs());
-            let duration_ms = (u64::from(steps) * 1_000 / u64::from(CORRECTION_HZ)).max(10);
-            let duration_ms = u32::try_from(duration_ms).unwrap_or(u32::MAX);
-            let command = EbbCommand::Constant { duration_ms, steps: [x, y] };
-            self.send_command(Purpose::Motion(self.motion_led()), command);
+            self.send_command(Purpose::Motion(self.motion_led()), back);
             return;
         }
         let is_lifted = matches!(command, EbbCommand::Pen { pen: Pen::Up, .. });
@@ -321,6 +344,15 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
             self.rest = Some((made, false));
         }
         self.send_command(Purpose::Motion(made), command);
+    }
+
+    /// What takes back what a damaged line did, if something is to be taken back.
+    fn correction(&mut self) -> Option<EbbCommand> {
+        let StepPoint { x, y } = core::mem::take(&mut self.correction);
+        let steps = x.unsigned_abs().max(y.unsigned_abs());
+        let duration_ms = (u64::from(steps) * 1_000 / u64::from(CORRECTION_HZ)).clamp(10, 1_000_000);
+        let duration_ms = u32::try_from(duration_ms).unwrap_or(u32::MAX);
+        (steps > 0).then_some(EbbCommand::Constant { duration_ms, steps: [x, y] })
     }
 
     /// Where the motors were led last.
@@ -388,6 +420,10 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
                     // Another wait behind the pen's: once that is taken, the pen's runs, and the motors stand.
                     let wait = EbbCommand::Constant { duration_ms: 1, steps: [0; 2] };
                     self.next = Some((wait, self.motion.made()));
+                    return false;
+                }
+                if let Some(back) = self.correction() {
+                    self.next = Some((back, self.motion.made()));
                     return false;
                 }
                 self.phase = match then {
@@ -464,6 +500,8 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
                 self.notice(MachineNotice::Greeted);
                 self.taken();
             }
+            // What an earlier host has asked for.
+            (_, Some(Purpose::Version)) => {}
             (Said::Place(first, second), Some(Purpose::Rest(_) | Purpose::Where)) => {
                 self.place = Some(StepPoint::new(first, second));
             }
