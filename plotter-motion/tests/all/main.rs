@@ -96,6 +96,7 @@ mod sim_backlash;
 mod sim_bad_wiring;
 mod sim_bench;
 mod sim_contour;
+mod sim_ebb;
 mod sim_enable_pwm;
 mod sim_every_line_ends;
 mod sim_grbl;

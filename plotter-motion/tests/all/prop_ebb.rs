@@ -13,23 +13,23 @@ use std::time::Duration;
 /// Sixteenths of a step to the millimetre of an AxiDraw.
 const STEPS_PER_MM: f64 = 80.0;
 
-fn axidraw() -> CoreXy {
+pub(crate) fn axidraw() -> CoreXy {
     CoreXy::new(BeltSigns::TrackingEquations, STEPS_PER_MM).unwrap()
 }
 
 /// What became of a drawing.
-struct Made {
-    commands: Vec<EbbCommand>,
+pub(crate) struct Made {
+    pub(crate) commands: Vec<EbbCommand>,
     /// Steps of both motors before each tick.
-    places: Vec<StepPoint>,
+    pub(crate) places: Vec<StepPoint>,
     pens: Vec<Pen>,
     /// How long the planner's motion takes, s, and how often it begins from rest.
-    planned_s: f64,
+    pub(crate) planned_s: f64,
     most_off: f64,
-    end: StepPoint,
+    pub(crate) end: StepPoint,
 }
 
-fn make(ops: &[PlotOp], planner: PlannerSettings, settings: EbbMotionSettings) -> Made {
+pub(crate) fn make(ops: &[PlotOp], planner: PlannerSettings, settings: EbbMotionSettings) -> Made {
     let mut planner = Planner::<64>::new(planner).unwrap();
     let mut motion = EbbMotion::new(axidraw(), settings);
     let mut commands = Vec::new();
