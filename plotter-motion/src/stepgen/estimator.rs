@@ -67,9 +67,20 @@ impl<const N: usize, M: Modes> Estimator<N, M> {
     ///
     /// None: there is room for what has been put off.
     pub fn finish(&mut self) -> Result<PlotTime, PlanError> {
+        self.finish_with(|_| {})
+    }
+
+    /// As [`finish`](Self::finish), and tells the time up to the end of each piece of motion that is left.
+    ///
+    /// # Errors
+    ///
+    /// As [`finish`](Self::finish).
+    pub fn finish_with(&mut self, mut each: impl FnMut(PlotTime)) -> Result<PlotTime, PlanError> {
         self.make_room();
         self.planner.finish()?;
-        while self.advance() {}
+        while self.advance() {
+            each(self.time());
+        }
         Ok(self.time())
     }
 

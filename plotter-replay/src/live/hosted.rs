@@ -81,6 +81,7 @@ impl<'a, W: Write> HostedEngine<'a, W> {
         }
         self.mark(true);
         let now = self.now();
+        self.tell(now);
         let kept = self.recorder.take().map(|recorder| recorder.finish());
         let mut view = lock(&self.shared.view);
         match kept {
@@ -88,7 +89,6 @@ impl<'a, W: Write> HostedEngine<'a, W> {
             Some(Ok(())) => view.recording = String::from("complete"),
             None => {}
         }
-        view.sample(now);
         view.state = end;
         self.shared.finished.notify_all();
     }
@@ -306,7 +306,19 @@ impl<'a, W: Write> HostedEngine<'a, W> {
         }
         self.sampled = Some(clock);
         self.mark(false);
-        let (now, status) = (self.now(), self.host.status());
+        let now = self.now();
+        self.tell(now);
+        if let Some(recorder) = &mut self.recorder
+            && let Err(error) = recorder.tick(now)
+        {
+            lock(&self.shared.view).recording = format!("stopped: {error}");
+            self.recorder = None;
+        }
+    }
+
+    /// What the host knows, on the screen.
+    fn tell(&self, now: Duration) {
+        let status = self.host.status();
         let since = self.draws_since.map_or(Duration::ZERO, |since| now.saturating_sub(since));
         let drawn = self.drawn.saturating_add(since);
         let mut view = lock(&self.shared.view);
@@ -321,12 +333,6 @@ impl<'a, W: Write> HostedEngine<'a, W> {
             hosted.rest = rest;
         }
         view.sample(now);
-        if let Some(recorder) = &mut self.recorder
-            && let Err(error) = recorder.tick(now)
-        {
-            view.recording = format!("stopped: {error}");
-            self.recorder = None;
-        }
     }
 }
 

@@ -90,8 +90,7 @@ impl Session {
         settings: SessionSettings,
     ) -> Self {
         let plan = drawing.as_ref().map(Timetable::plan);
-        let mut view = View::new(settings.plotter, State::Ready, plan);
-        view.state = State::Connecting;
+        let mut view = View::new(settings.plotter, State::Connecting, plan);
         view.hosted = Some(Hosted { feed_percent: 100, ..Hosted::default() });
         view.recording = String::from(if recorder.is_some() { "on" } else { "none" });
         let shared = Arc::new(Shared {

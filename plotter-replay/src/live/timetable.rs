@@ -10,6 +10,10 @@ use plotter_motion::{Machine, PlannerSettings, PlotOp, Point};
 /// stands for more than a 2048th of the drawing, 0.05 %.
 const MOST_ENTRIES: usize = 4_096;
 
+/// So long after it an operation is known to be done, s: a host asks five times a second, and a
+/// place near a corner is not past it.
+const TOLD_LATE_S: f64 = 0.35;
+
 /// When a machine will have done which operation, from the limits of its description, in bounded memory.
 ///
 /// ```
@@ -23,21 +27,67 @@ const MOST_ENTRIES: usize = 4_096;
 /// let total = table.finish();
 /// // 4 s, 0.18 s for the ramps and 0.4 s for the pen down and up
 /// assert!((total.as_secs_f64() - 4.58).abs() < 0.01);
-/// let rest = table.rest(2, total);
+/// let rest = table.rest(2, total / 2);
 /// assert!((rest.as_secs_f64() - 2.3).abs() < 0.2);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Timetable {
     estimator: Estimator<16>,
-    /// Operations and when they are done at the earliest, s.
-    entries: Vec<(u64, f64)>,
-    /// Every so many operations are kept.
-    every: u64,
+    /// Operations and how far the pen has gone behind them, mm.
+    ways: Table,
+    /// How far it has gone, mm, and when, s. It is told later than it is asked for: the planner looks ahead.
+    times: Table,
     ops: u64,
     at: Point,
     way_mm: f64,
     total: Duration,
+}
+
+/// Pairs of numbers that grow together, as many as are kept.
+#[derive(Clone, Debug)]
+struct Table {
+    entries: Vec<(f64, f64)>,
+    /// Every so many are kept.
+    every: u64,
+    taken: u64,
+}
+
+impl Table {
+    const fn new() -> Self {
+        Self { entries: Vec::new(), every: 1, taken: 0 }
+    }
+
+    fn push(&mut self, from: f64, to: f64) {
+        // What is told of one place last is what holds behind it.
+        if let Some(last) = self.entries.last_mut().filter(|last| last.0 == from) {
+            last.1 = to;
+            return;
+        }
+        self.taken = self.taken.saturating_add(1);
+        if !self.taken.is_multiple_of(self.every) {
+            return;
+        }
+        self.entries.push((from, to));
+        if self.entries.len() > MOST_ENTRIES {
+            self.every = self.every.saturating_mul(2);
+            let mut is_kept = false;
+            self.entries.retain(|_| {
+                is_kept = !is_kept;
+                !is_kept
+            });
+        }
+    }
+
+    /// What belongs to a number: evenly between what is kept, from (0, 0) on.
+    fn at(&self, from: f64) -> f64 {
+        let place = self.entries.partition_point(|&(entry, _)| entry < from);
+        let before =
+            place.checked_sub(1).and_then(|place| self.entries.get(place)).copied().unwrap_or_default();
+        let Some(&(next, to)) = self.entries.get(place) else { return before.1 };
+        let span = next - before.0;
+        if span > 0.0 { before.1 + (from - before.0) / span * (to - before.1) } else { to }
+    }
 }
 
 impl Timetable {
@@ -50,8 +100,8 @@ impl Timetable {
         let estimator = Estimator::new(PlannerSettings::of(machine), StepGenSettings::of(machine))?;
         Ok(Self {
             estimator,
-            entries: Vec::new(),
-            every: 1,
+            ways: Table::new(),
+            times: Table::new(),
             ops: 0,
             at: Point::ORIGIN,
             way_mm: 0.0,
@@ -63,24 +113,29 @@ impl Timetable {
     pub fn push(&mut self, op: PlotOp) {
         let _ = self.estimator.push(op); // (its host says that it is left out)
         if let Some(to) = op.target() {
-            self.way_mm += self.at.distance(to);
+            self.way_mm += match op {
+                PlotOp::DrawArc { centre, sweep_rad, .. } => (to - centre).length() * sweep_rad.abs(),
+                _ => self.at.distance(to),
+            };
             self.at = to;
         }
         self.ops = self.ops.saturating_add(1);
-        if self.ops.is_multiple_of(self.every) {
-            self.entries.push((self.ops, self.estimator.time().total.as_secs_f64()));
-        }
-        if self.entries.len() > MOST_ENTRIES {
-            self.every = self.every.saturating_mul(2);
-            let every = self.every;
-            self.entries.retain(|(op, _)| op.is_multiple_of(every));
-        }
+        #[expect(clippy::cast_precision_loss, reason = "operations below 2^53")]
+        self.ways.push(self.ops as f64, self.way_mm);
+        let time = self.estimator.time();
+        self.times.push(time.draw_mm + time.travel_mm, time.total.as_secs_f64());
     }
 
     /// No more operations come: how long all of them take. That somebody changes pens is not in it.
     pub fn finish(&mut self) -> Duration {
-        self.total = self.estimator.finish().unwrap_or_else(|_| self.estimator.time()).total;
-        self.entries.push((self.ops, self.total.as_secs_f64()));
+        let Self { estimator, times, .. } = self;
+        let told =
+            estimator.finish_with(|time| times.push(time.draw_mm + time.travel_mm, time.total.as_secs_f64()));
+        let time = told.unwrap_or_else(|_| estimator.time());
+        times.entries.push((time.draw_mm + time.travel_mm, time.total.as_secs_f64()));
+        #[expect(clippy::cast_precision_loss, reason = "operations below 2^53")]
+        self.ways.entries.push((self.ops as f64, self.way_mm));
+        self.total = time.total;
         self.total
     }
 
@@ -96,35 +151,29 @@ impl Timetable {
     pub fn rest(&self, done: u64, drawn: Duration) -> Duration {
         let total_s = self.total.as_secs_f64();
         let at_s = self.time_s(done);
-        let next_s = self.time_s(done.saturating_add(1));
+        // What is under way is partly done, too, and may be done by now.
+        let next_s = (self.time_s(done.saturating_add(1)) + TOLD_LATE_S).max(at_s);
         let drawn_s = drawn.as_secs_f64();
-        let share = if at_s > 0.05 * total_s && drawn_s > 0.0 {
-            // What is under way is partly done, too: the pace is right for both ends, or for what lies between.
-            if drawn_s < at_s {
-                drawn_s / at_s
-            } else if drawn_s > next_s {
-                drawn_s / next_s
-            } else {
-                1.0
-            }
-        } else {
+        if at_s <= 0.05 * total_s {
+            // Too little to tell how fast it is.
+            return self
+                .total
+                .saturating_sub(drawn.max(Duration::try_from_secs_f64(at_s).unwrap_or_default()));
+        }
+        let share = if (at_s..=next_s).contains(&drawn_s) {
             1.0
+        } else if drawn_s < at_s {
+            drawn_s / at_s
+        } else {
+            drawn_s / next_s
         };
-        let now_s = (drawn_s / share).clamp(at_s, next_s.max(at_s));
+        let now_s = if share > 0.0 { (drawn_s / share).clamp(at_s, next_s) } else { at_s };
         Duration::try_from_secs_f64(((total_s - now_s) * share).max(0.0)).unwrap_or_default()
     }
 
     /// When so many operations are done, s.
     fn time_s(&self, done: u64) -> f64 {
-        let place = self.entries.partition_point(|&(op, _)| op < done);
-        let (op, time_s) = self.entries.get(place).or(self.entries.last()).copied().unwrap_or_default();
-        let before =
-            place.checked_sub(1).and_then(|place| self.entries.get(place)).copied().unwrap_or_default();
-        if op <= before.0 || done >= op {
-            return time_s;
-        }
-        #[expect(clippy::cast_precision_loss, reason = "a share")]
-        let share = done.saturating_sub(before.0) as f64 / (op - before.0) as f64;
-        before.1 + share * (time_s - before.1)
+        #[expect(clippy::cast_precision_loss, reason = "operations below 2^53")]
+        self.times.at(self.ways.at(done as f64))
     }
 }

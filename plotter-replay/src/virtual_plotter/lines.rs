@@ -249,6 +249,8 @@ impl VirtualPlotter {
         let Some(lines) = &mut self.lines else { return };
         let is_grbl = lines.tongue == Tongue::Grbl;
         match byte {
+            // A movement by hand ends where the machine says.
+            0x85 if is_grbl => self.forget_planned(),
             b'?' | b'!' | b'~' | 0x80.. if is_grbl => {}
             0x18 if is_grbl => {
                 lines.line.clear();

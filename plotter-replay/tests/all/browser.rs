@@ -437,3 +437,98 @@ fn the_stop_is_in_reach_on_every_screen_and_no_canvas_keeps_the_page_from_scroll
     browser.wait_for("sheet.view.zoom > 2.1");
     assert_eq!(browser.complaints, Vec::<String>::new());
 }
+
+/// A square, a pen change, a circle; some 20 seconds on the documented machine.
+const TWO_PENS: &str = "G21\nG90\nG0 X20 Y20\nM3 S90\nG1 X120 Y20 F2400\nX120 Y100\nX20 Y100\nX20 Y20\nM5\nM0 (pen 2)\nG0 X60 \
+                        Y60\nM3 S90\nG2 X60 Y60 I20 J0 F2400\nM5\n";
+
+#[test]
+#[ignore = "needs a browser: .ci/browser"]
+fn a_grbl_machine_is_led_by_hand_started_paused_changes_its_pen_is_stopped_and_finishes() {
+    let here = tempfile::tempdir().unwrap();
+    std::fs::write(
+        here.path().join("machine.toml"),
+        "schema = 1\nname = \"steppers\"\ndrive = \"stepper\"\n[area]\nwidth_mm = 380.0\nheight_mm = 310.0\n[serial]\nbaud = 115200\n",
+    )
+    .unwrap();
+    std::fs::write(here.path().join("drawing.gcode"), TWO_PENS).unwrap();
+    let (_machine, mut said) = Running::start(&["simulate", "machine.toml"], here.path());
+    let port = said().split_once(" is simulated on ").unwrap().1.to_owned();
+    let (mut live, mut said) = Running::start(
+        &["live", "--port", &port, "--machine", "machine.toml", "drawing.gcode", "-o", "session.plog"],
+        here.path(),
+    );
+    assert!(said().contains("which language"));
+    assert!(said().contains("speaks Grbl"));
+    let address = said().strip_prefix("look at ").unwrap().to_owned();
+    let mut browser = Browser::start();
+    browser.open(&address);
+    browser.wait_for("document.body.dataset.state === 'ready'");
+    for [width, height] in [[320, 568], [390, 844], [860, 600], [1280, 800]] {
+        browser.screen(width, height, true);
+        browser.open(&address);
+        browser.wait_for("document.body.dataset.state === 'ready'");
+        assert_eq!(browser.eval("document.documentElement.scrollWidth"), json!(width), "wider than {width}");
+        for scheme in ["dark", "light"] {
+            browser.scheme(scheme);
+            browser.painted();
+            browser.screenshot(&format!("hosted-{width}x{height}-{scheme}"));
+        }
+    }
+    browser.screen(1280, 800, false);
+    browser.open(&address);
+    browser.wait_for("document.body.dataset.state === 'ready'");
+    // Its drawing's time by the machine's limits, before it begins.
+    assert!(browser.value("remaining").ends_with(" s"), "{}", browser.value("remaining"));
+    // By hand: a step by an arrow key, on and on while a button is held, and back by numbers.
+    browser.eval("document.body.focus()");
+    browser.key("ArrowRight", 39);
+    browser.wait_for("Math.abs(last.at[0] - 10) < 0.02");
+    browser.eval("$('step').value = '0'; jog('0 1')");
+    browser.wait_for("last.at[1] > 3");
+    browser.eval("letGo()");
+    browser.wait_for("last.speed_mm_s.every((v) => v === 0)");
+    assert!(browser.eval("last.at[1]").as_f64().unwrap() < 60.0);
+    browser.eval("$('go-x').value = 0; $('go-y').value = 0");
+    browser.click("#go");
+    browser.wait_for("Math.hypot(...last.at) < 0.02");
+
+    browser.click("#start");
+    browser.wait_for("document.body.dataset.state === 'running' && last.at[0] > 60 && last.pen === 'down'");
+    browser.screenshot("hosted-running");
+    browser.key(" ", 32);
+    browser.wait_for("document.body.dataset.state === 'paused'");
+    assert_eq!(browser.value("pen"), "up");
+    browser.screenshot("hosted-paused");
+    browser.key(" ", 32);
+    browser.wait_for("document.body.dataset.state === 'running' && last.at[1] > 40 && last.pen === 'down'");
+    // From the click to the first update in which nothing moves, by the browser's own clock.
+    let ms = browser.eval(
+        "new Promise((done) => { const clicked = performance.now(); document.getElementById('stop').click(); \
+         const look = () => last.state === 'stopped' || last.state === 'locked' ? done(performance.now() - clicked) : setTimeout(look, 1); look(); })",
+    );
+    println!("a Grbl machine is stopped on the screen {ms} ms after the click");
+    browser.screenshot("hosted-stopped");
+    std::thread::sleep(Duration::from_millis(600));
+    if browser.eval("document.body.dataset.state") == json!("locked") {
+        browser.click("[data-ask=unlock]");
+    } else {
+        browser.click("#resume");
+    }
+    browser.wait_for("document.body.dataset.state === 'paused'");
+    browser.click("#resume");
+    // The other pen is waited for, by its number.
+    browser.wait_for("document.body.dataset.state === 'paused' && last.wants.startsWith('pen 2 is wanted')");
+    browser.screenshot("hosted-pen");
+    assert!(browser.text("#banner").starts_with("Pen 2 is wanted"));
+    browser.click("#resume");
+    browser.wait_for("document.body.dataset.state === 'done'");
+    browser.screenshot("hosted-done");
+    assert_eq!(browser.value("operations done"), "9 of 9");
+    assert_eq!(browser.complaints, Vec::<String>::new());
+    assert_eq!(live.finish(), (Some(0), String::new()));
+    let info =
+        Command::new(PROGRAM).args(["info", "session.plog"]).current_dir(here.path()).output().unwrap();
+    let info = String::from_utf8(info.stdout).unwrap();
+    assert!(info.contains("nothing lost"), "{info}");
+}

@@ -23,13 +23,13 @@ fn machine() -> Machine {
 
 type Ops = std::vec::IntoIter<PlotOp>;
 
-fn grbl(ops: Vec<PlotOp>) -> LineHost<Grbl<'static>, Ops> {
+fn grbl(ops: Vec<PlotOp>) -> Box<LineHost<Grbl<'static>, Ops>> {
     let options = WriteOptions { settle: Duration::ZERO, ..WriteOptions::default() };
-    LineHost::new(Grbl::new(options), LineHostSettings::default(), ops.into_iter())
+    Box::new(LineHost::new(Grbl::new(options), LineHostSettings::default(), ops.into_iter()))
 }
 
-fn mdraw(ops: Vec<PlotOp>) -> LineHost<MDraw<'static>, Ops> {
-    LineHost::new(MDraw::new("M1 160", "M1 90"), LineHostSettings::default(), ops.into_iter())
+fn mdraw(ops: Vec<PlotOp>) -> Box<LineHost<MDraw<'static>, Ops>> {
+    Box::new(LineHost::new(MDraw::new("M1 160", "M1 90"), LineHostSettings::default(), ops.into_iter()))
 }
 
 fn is_whole(notices: &[MachineNotice]) -> bool {
@@ -65,7 +65,7 @@ fn a_drawing_on_an_mdraw_machine_ends_where_it_should() {
 }
 
 /// Pauses and goes on at so many places that each part of the drawing is met.
-fn assert_pauses_lose_nothing<H: MachineHost>(mut desk: Desk<H>, every: Duration, least_pauses: usize) {
+fn assert_pauses_lose_nothing(mut desk: Desk, every: Duration, least_pauses: usize) {
     let machine = machine();
     desk.until(&[HostState::Ready], LONG);
     desk.ask(Request::GoOn);
@@ -130,7 +130,7 @@ fn pauses_on_a_grbl_machine_lift_the_pen_at_once_and_cost_no_ink() {
 #[test]
 fn a_pause_is_there_within_the_braking_and_not_behind_the_queue() {
     let far = |n: u32| PlotOp::Draw {
-        to: Point::new(if n % 2 == 0 { 1.0 } else { 59.0 }, f64::from(n)),
+        to: Point::new(if n.is_multiple_of(2) { 1.0 } else { 59.0 }, f64::from(n)),
         feed_mm_s: Some(5.0),
     };
     let mut desk = Desk::new(grbl((0..12).map(far).collect()), &machine(), Spoken::Grbl, "");
@@ -192,8 +192,8 @@ fn another_pen_and_another_sheet_are_waited_for() {
     ops.extend(square(10.0));
     for spoken in [Spoken::Grbl, Spoken::MDraw] {
         let host: Box<dyn MachineHost> =
-            if spoken == Spoken::Grbl { Box::new(grbl(ops.clone())) } else { Box::new(mdraw(ops.clone())) };
-        let mut desk = Desk::new(Boxed(host), &machine(), spoken, "");
+            if spoken == Spoken::Grbl { grbl(ops.clone()) } else { mdraw(ops.clone()) };
+        let mut desk = Desk::new(host, &machine(), spoken, "");
         desk.until(&[HostState::Ready], LONG);
         let waits = [HostState::PenWanted(3), HostState::SheetWanted, HostState::Done];
         for wanted in waits {
@@ -202,33 +202,6 @@ fn another_pen_and_another_sheet_are_waited_for() {
             desk.wait(Duration::from_millis(100));
             assert_eq!(desk.host.status().state, wanted);
         }
-    }
-}
-
-/// A host of any language.
-struct Boxed(Box<dyn MachineHost>);
-
-impl MachineHost for Boxed {
-    fn poll(&mut self, now: Duration) -> Option<MachineNotice> {
-        self.0.poll(now)
-    }
-    fn next_byte(&mut self, now: Duration) -> Option<u8> {
-        self.0.next_byte(now)
-    }
-    fn receive(&mut self, now: Duration, byte: u8) {
-        self.0.receive(now, byte);
-    }
-    fn next_wake(&self) -> Option<Duration> {
-        self.0.next_wake()
-    }
-    fn ask(&mut self, now: Duration, request: Request) -> Result<(), NotNow> {
-        self.0.ask(now, request)
-    }
-    fn stop_bytes(&self) -> &'static [u8] {
-        self.0.stop_bytes()
-    }
-    fn status(&self) -> plotter_motion::protocol::hosts::HostStatus {
-        self.0.status()
     }
 }
 
@@ -241,7 +214,7 @@ fn a_killed_host_s_drawing_goes_on_at_the_place_where_the_machine_rests() {
         desk.wait(Duration::from_secs_f64(seconds));
         let status = desk.host.status();
         // It is killed; what is on the line is drawn.
-        let mut desk = desk.with(grbl(drawing()).resuming(status.done, status.sent + 8));
+        let mut desk = desk.with(Box::new(grbl(drawing()).resuming(status.done, status.sent + 8)));
         assert_eq!(desk.until(&[HostState::Paused], LONG), HostState::Paused);
         desk.ask(Request::GoOn);
         assert_eq!(desk.until(&[HostState::Done], LONG), HostState::Done, "{:?}", desk.notices);
@@ -310,4 +283,29 @@ fn a_jog_by_hand_moves_and_a_pen_is_lifted_and_lowered() {
         Axis::Y => (x, y + sign),
     });
     assert!(x > 1_000 && y > 400, "{x} {y}");
+}
+
+#[test]
+fn the_time_that_is_left_is_right_within_two_hundredths_behind_a_twentieth() {
+    use plotter_replay::live::Timetable;
+    let machine = machine();
+    let mut table = Timetable::new(&machine).unwrap();
+    drawing().into_iter().for_each(|op| table.push(op));
+    let total = table.finish();
+    let mut desk = Desk::new(grbl(drawing()), &machine, Spoken::Grbl, "");
+    desk.until(&[HostState::Ready], LONG);
+    desk.ask(Request::GoOn);
+    let began = desk.now();
+    let mut told = Vec::new();
+    while desk.host.status().state != HostState::Done {
+        desk.round();
+        let drawn = desk.now() - began;
+        told.push((drawn, table.rest(desk.host.status().done, drawn)));
+    }
+    let whole = desk.now() - began;
+    let behind = told.iter().filter(|(drawn, _)| drawn.as_secs_f64() > 0.05 * whole.as_secs_f64());
+    let off = behind.map(|(drawn, rest)| (whole.as_secs_f64() - (*drawn + *rest).as_secs_f64()).abs());
+    let worst = off.fold(0.0, f64::max);
+    println!("{total:?} planned, {whole:?} drawn, the time left off by {worst:.3} s at most");
+    assert!(worst < 0.02 * whole.as_secs_f64(), "{worst} of {whole:?}, planned {total:?}");
 }

@@ -25,6 +25,8 @@ mod golden_simulated;
 mod host_of_ebb;
 #[cfg(feature = "live")]
 mod hosts_of_lines;
+#[cfg(feature = "live")]
+mod hosts_on_bad_lines;
 mod house;
 mod import;
 mod line;

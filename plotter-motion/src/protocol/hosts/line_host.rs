@@ -132,6 +132,8 @@ pub struct LineHost<L, I> {
     at: Option<Point>,
     /// Whether the machine's place is that of the drawing.
     knows_place: bool,
+    /// Whether it moves by hand: GRBL refuses all but further such movements until it stands.
+    jogs: bool,
     /// Whether what was sent is forgotten, and the place where it ended not told yet.
     is_interrupted: bool,
     pen: Pen,
@@ -171,6 +173,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             told: HostState::Unheard,
             at: None,
             knows_place: true,
+            jogs: false,
             is_interrupted: false,
             pen: Pen::Up,
             holder: None,
@@ -352,6 +355,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
     /// The machine has forgotten all that it was sent.
     fn forget(&mut self) {
         self.interrupt_ending();
+        self.jogs = false;
         self.queue.clear();
         self.language.begin();
         self.pen = Pen::Up;
@@ -502,6 +506,9 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             self.settle(at.or(self.at));
         }
         self.rests = if doing == Some(Doing::Idle) { self.rests.saturating_add(1) } else { 0 };
+        if self.rests > 0 && self.queue.in_flight().lines == 0 {
+            self.jogs = false;
+        }
         if self.rests >= RESTS_FOR_LOST && L::QUERY.is_some() && self.queue.in_flight().lines > 0 {
             // It waits, and so has taken all that it will take.
             self.notice(MachineNotice::AnswerLost);
@@ -573,6 +580,8 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                     self.notice(MachineNotice::Garbled);
                 }
             }
+            // (of a stop that was asked for it is no news)
+            Answer::Alarm(_) if self.phase == Phase::Stopped => self.forget(),
             Answer::Alarm(code) => {
                 self.notice(MachineNotice::Alarm { code });
                 self.forget();
@@ -716,7 +725,11 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
         if matches!(self.phase, Phase::Braking | Phase::Forgetting) {
             return None;
         }
-        let (bytes, is_begun) = self.queue.next()?;
+        let (bytes, purpose, is_begun) = self.queue.next()?;
+        if self.jogs && purpose != Purpose::Jog {
+            return None;
+        }
+        self.jogs |= purpose == Purpose::Jog && L::QUERY.is_some();
         if !is_begun && !self.language.fits(self.queue.in_flight(), bytes) {
             return None;
         }
@@ -820,7 +833,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
                     return Err(NotNow::OutOfRange);
                 }
                 let has_word = self.language.jog(self.at.unwrap_or_default(), by, feed_mm_s, &mut text);
-                self.by_hand(&text, has_word, Purpose::ByHand)
+                self.by_hand(&text, has_word, Purpose::Jog)
             }
             Request::EndJog => {
                 self.is_free()?;
@@ -862,7 +875,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
         HostStatus {
             state: self.state(),
             at: self.at,
-            pen: self.pen,
+            pen: self.trail.pen().unwrap_or(self.pen),
             sent: self.sent_ops,
             done: if self.phase == Phase::Done { self.index } else { self.trail.done() },
             feed_percent: self.feed_percent,

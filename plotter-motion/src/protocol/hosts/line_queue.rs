@@ -19,6 +19,8 @@ pub enum Purpose {
     },
     /// What a person has asked for.
     ByHand,
+    /// A movement by hand that may be ended on its way.
+    Jog,
     /// A question about the machine.
     Question,
     /// Answered when all before it is done.
@@ -80,9 +82,9 @@ impl LineQueue {
         InFlight { lines: self.sent, bytes: lines.map(|line| line.count).sum() }
     }
 
-    /// Bytes of the next line, and whether it is begun; `None` if all are out.
-    pub(super) fn next(&self) -> Option<(usize, bool)> {
-        self.lines.get(self.sent).map(|line| (line.count, self.bytes_sent > 0))
+    /// Bytes of the next line, what it is for, and whether it is begun; `None` if all are out.
+    pub(super) fn next(&self) -> Option<(usize, Purpose, bool)> {
+        self.lines.get(self.sent).map(|line| (line.count, line.purpose, self.bytes_sent > 0))
     }
 
     /// The next byte, which counts as sent.

@@ -187,7 +187,7 @@ pub struct HostStatus {
     pub state: HostState,
     /// Where the pen is, as the machine told last, mm on the sheet.
     pub at: Option<Point>,
-    /// How the pen is, as far as what was sent last says.
+    /// How the pen is: as what is under way has it, or else what was sent last.
     pub pen: Pen,
     /// Operations of the drawing that were sent whole.
     pub sent: u64,

@@ -75,7 +75,10 @@ impl fmt::Display for MachineNotice {
                 HostState::Locked(0) => f.write_str(
                     "the machine is locked: lead it home, or unlock it if it stands where it says",
                 ),
-                HostState::Locked(code) => write!(f, "the machine is locked by alarm {code}"),
+                HostState::Locked(code) => {
+                    write!(f, "the machine is locked by alarm {code}")?;
+                    remedy(f, grbl_alarm(*code))
+                }
                 HostState::Done => f.write_str("done, the pen is lifted"),
             },
             Self::Greeted => f.write_str("the machine has greeted"),

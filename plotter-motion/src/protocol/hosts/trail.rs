@@ -1,7 +1,7 @@
 //! [`Trail`]: operations that a machine was given, until it has carried them out.
 
 use super::ring::Ring;
-use crate::{PlotOp, Point, Segment};
+use crate::{Pen, PlotOp, Point, Segment};
 
 /// Operations that are kept. GRBL plans 15 moves and has 128 bytes of lines before them; GRBLHAL plans up to
 /// 100.
@@ -50,6 +50,15 @@ impl Trail {
     /// The next that the machine was not sent.
     pub(super) fn next(&self) -> Option<Given> {
         self.ops.get(self.sent).copied()
+    }
+
+    /// How the pen is in the first that was sent and is not done.
+    pub(super) fn pen(&self) -> Option<Pen> {
+        (0..self.sent).find_map(|place| match self.ops.get(place)?.op {
+            PlotOp::Travel { .. } => Some(Pen::Up),
+            PlotOp::Draw { .. } | PlotOp::DrawArc { .. } => Some(Pen::Down),
+            _ => None,
+        })
     }
 
     /// Operations that were sent and are not known to be done.

@@ -29,8 +29,8 @@ impl Write for Kept {
 pub(crate) type Damage = Box<dyn FnMut(bool, u8) -> u8>;
 
 /// A host at its desk, with a machine on its line.
-pub(crate) struct Desk<H> {
-    pub host: H,
+pub(crate) struct Desk {
+    pub host: Box<dyn MachineHost>,
     line: MachineLine<Kept>,
     log: MachineLog<Kept>,
     kept: Kept,
@@ -42,8 +42,8 @@ pub(crate) struct Desk<H> {
     pub damage: Option<Damage>,
 }
 
-impl<H: MachineHost> Desk<H> {
-    pub(crate) fn new(host: H, machine: &Machine, spoken: Spoken, script: &str) -> Self {
+impl Desk {
+    pub(crate) fn new(host: Box<dyn MachineHost>, machine: &Machine, spoken: Spoken, script: &str) -> Self {
         let kept = Kept::default();
         let header = Header::new().with_number("baud", machine.config().serial.baud.into());
         let log = MachineLog::new(Writer::new(kept.clone(), &header).unwrap());
@@ -59,9 +59,9 @@ impl<H: MachineHost> Desk<H> {
     }
 
     /// Another host comes to the same machine.
-    pub(crate) fn with<G>(self, host: G) -> Desk<G> {
+    pub(crate) fn with(self, host: Box<dyn MachineHost>) -> Self {
         let Self { line, log, kept, wire, free, sent, damage, .. } = self;
-        Desk { host, line, log, kept, wire, free, notices: Vec::new(), sent, damage }
+        Self { host, line, log, kept, wire, free, notices: Vec::new(), sent, damage }
     }
 
     /// Once round.

@@ -48,7 +48,7 @@ sheet.box = data.box;
 const curve = (role, label, run) => ({ role, label, run, points: [] });
 const charts = ["X", "Y"].map((name) => new Chart($("charts"), name, "mm", [curve("target", "target", "steps"), curve("desired", "on the line"), curve("actual", "actual")]));
 const error = new Chart($("charts"), "contour error", "mm", [curve("error", "distance from the line")]);
-charts.push(error);
+if (!data.hand) charts.push(error); else error.canvas.closest("section")?.remove();
 
 const fixed = (value, digits, unit) => value === null || value === undefined ? "–" : value.toFixed(digits) + " " + unit;
 const clock = (s) => {
@@ -113,7 +113,7 @@ function take(update) {
   $("progress").value = update.targets ? update.sent / update.targets : 0;
   fill($("done"), [
     [data.hand ? "operations done" : "targets done", update.targets === null ? String(update.sent) : update.sent + " of " + update.targets],
-    ["reached", String(update.reached)],
+    ...(data.hand ? [] : [["reached", String(update.reached)]]),
     ["remaining", update.state === "done" ? "–" : clock(update.remaining_s ?? (isPreview() ? data.takes_s : null))],
     ["recording", update.recording],
   ]);
@@ -164,11 +164,16 @@ let pressed = -Infinity;
 $("stop").addEventListener("pointerdown", (event) => { pressed = event.timeStamp; ask("stop"); });
 // By hand: a step at each press, or, where the step is "held", on and on until it is let go.
 const ARROWS = { ArrowLeft: "-1 0", ArrowRight: "1 0", ArrowUp: "0 1", ArrowDown: "0 -1" };
-const FAR = 10000; // mm: longer than any machine; the machine's own limits end it
+// How far the pen may go that way inside the machine's area, mm; a machine refuses what leads beyond it.
+function room(x, y) {
+  const [x0, y0, x1, y1] = data.box, along = (sign, at, low, high) => sign ? Math.max(0, sign < 0 ? at - low : high - at) : Infinity;
+  return Math.min(along(x, last.at[0], x0, x1), along(y, last.at[1], y0, y1));
+}
 let isHeld = false;
 const value = (id) => Number($(id).value) || 0;
 function jog(direction) {
-  const step = Number($("step").value), [x, y] = direction.split(" ").map(Number), by = step || FAR;
+  const step = Number($("step").value), [x, y] = direction.split(" ").map(Number), by = step || Math.floor(room(x, y) * 1e3) / 1e3;
+  if (!by) return;
   isHeld = !step;
   ask(["jog", x * by, y * by, Math.max(0.1, value("jog-speed"))].join(" "));
 }
