@@ -3,9 +3,7 @@
 use crate::driven::{Desk, drawing};
 use plotter_motion::kinematics::{BeltSigns, CoreXy, Kinematics};
 use plotter_motion::protocol::ebb::EbbMotionSettings;
-use plotter_motion::protocol::hosts::{
-    EbbHost, EbbHostSettings, HostState, MachineHost, MachineNotice, NotNow, Request,
-};
+use plotter_motion::protocol::hosts::{EbbHost, EbbHostSettings, HostState, MachineNotice, NotNow, Request};
 use plotter_motion::{Machine, MachineConfig, PlannerSettings, PlotOp, Point, StepPoint, Vec2};
 use plotter_replay::live::Spoken;
 use plotter_replay::log::Event;
