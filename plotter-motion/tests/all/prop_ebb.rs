@@ -247,9 +247,9 @@ proptest! {
                 let lasts_s = f64::from(ticks_of(*motor)) / 25_000.0;
                 // A motor moves x + y: √2 of what the pen does along a diagonal. A move leads from whole step
                 // to whole step, a step more in its time, and where the acceleration changes in it the motor
-                // begins or ends by up to 7 steps in its time faster.
+                // begins or ends by up to 11 steps in its time faster.
                 let rate = f64::from(motor.rate) / 2_f64.powi(31) * 25_000.0;
-                let most = 2_f64.sqrt() * 2.0 * speed_mm_s * STEPS_PER_MM + 8.0 / lasts_s.max(0.004);
+                let most = 2_f64.sqrt() * 2.0 * speed_mm_s * STEPS_PER_MM + 12.0 / lasts_s.max(0.004);
                 prop_assert!(rate <= most, "{rate} steps/s of {most}: {command}");
                 // The same of the acceleration.
                 let accel = f64::from(motor.accel).abs() / 2_f64.powi(31) * 25_000.0_f64.powi(2);
