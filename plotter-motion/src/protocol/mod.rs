@@ -1,6 +1,7 @@
 //! What goes over the serial line, sans-IO: bytes in, meaning out, and back.
 
 pub mod digits;
+pub mod ebb;
 pub mod frame;
 mod hello;
 mod host;

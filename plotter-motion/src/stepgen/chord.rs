@@ -2,8 +2,9 @@
 
 use super::slice::{FRACTION_BITS, fixed};
 use crate::extremes::greatest;
+use crate::geom::single;
 use crate::kinematics::Kinematics;
-use crate::planner::Modes;
+use crate::planner::{AllModes, Modes};
 use crate::root::root;
 use crate::toolpath::chords::chord_count;
 use crate::turn::sin_cos;
@@ -106,6 +107,14 @@ impl Chords {
     }
 }
 
+/// The place on a course behind this share of its length, 0 to 1.
+pub(crate) fn place_on(course: &Course, from: &Point, share: f64) -> Point {
+    match course.shape {
+        Shape::Line => from.lerp(course.to, share),
+        _ => Chords { from: *from, count: 1, next: 0 }.place::<AllModes>(course, single(share)).0,
+    }
+}
+
 /// So many of so many, as a share.
 #[expect(clippy::cast_precision_loss, reason = "numbers of 17 bits")]
 fn share(part: u32, whole: u32) -> f32 {
@@ -116,9 +125,7 @@ fn share(part: u32, whole: u32) -> f32 {
 mod tests {
     use super::*;
     use crate::Vec2;
-    use crate::geom::single;
     use crate::kinematics::{Cartesian, MotorScale};
-    use crate::planner::AllModes;
 
     #[test]
     fn chords_are_as_near_to_a_flat_arc_as_to_a_round_one() {

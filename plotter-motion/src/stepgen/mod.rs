@@ -26,6 +26,8 @@ mod step_gen;
 mod step_queue;
 mod timed_events;
 
+pub(crate) use chord::place_on;
+
 pub use backlash_steps::BacklashSteps;
 pub use estimator::Estimator;
 pub use plot_timer::{PlotTime, PlotTimer};

@@ -71,6 +71,7 @@ mod prop_control;
 mod prop_cut;
 #[cfg(feature = "alloc")]
 mod prop_drawing;
+mod prop_ebb;
 mod prop_gcode;
 mod prop_homing;
 mod prop_hpgl;
@@ -97,6 +98,7 @@ mod sim_backlash;
 mod sim_bad_wiring;
 mod sim_bench;
 mod sim_contour;
+mod sim_ebb;
 mod sim_enable_pwm;
 mod sim_every_line_ends;
 mod sim_grbl;

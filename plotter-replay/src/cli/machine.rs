@@ -72,8 +72,21 @@ pub(crate) fn simulated_header(machine: &Machine, spoken: crate::live::Spoken) -
         (Spoken::MDraw, _) => lines_header(machine, "mdraw"),
         (Spoken::Marlin, _) => lines_header(machine, "marlin"),
         (Spoken::Hpgl, _) => lines_header(machine, "hpgl"),
+        (Spoken::Ebb { is_mixed }, _) => ebb_header(machine, is_mixed),
     };
     header.with_text("clock", "simulated")
+}
+
+#[cfg(all(feature = "live", unix))]
+fn ebb_header(machine: &Machine, is_mixed: bool) -> Header {
+    let config = machine.config();
+    let header = Header::new()
+        .with_number("baud", config.serial.baud.into())
+        .with_text("protocol", "ebb")
+        .with_text("machine", config.name.as_str())
+        .with_decimal("x_mm_per_pulse", 1.0 / config.x.stepper.steps_per_mm)
+        .with_decimal("y_mm_per_pulse", 1.0 / config.y.stepper.steps_per_mm);
+    if is_mixed { header.with_text("belt_signs", "tracking-equations") } else { header }
 }
 
 #[cfg(all(feature = "live", unix))]

@@ -76,6 +76,10 @@ enum Dialect {
     Marlin,
     /// HPGL with device control, as a 7475A on a serial line: stepper motors
     Hpgl,
+    /// The commands of an EBB, its motors on one belt as in the AxiDraw: stepper motors
+    Ebb,
+    /// The commands of an EBB, each motor with an axis of its own as in the EggBot: stepper motors
+    Eggbot,
     /// The published ten digits a target: DC motors
     Digits,
     /// The reliable link with a host that calls, else digits: DC motors that each move an axis
@@ -167,6 +171,8 @@ impl Simulate {
             Dialect::Mdraw => Spoken::MDraw,
             Dialect::Marlin => Spoken::Marlin,
             Dialect::Hpgl => Spoken::Hpgl,
+            Dialect::Ebb => Spoken::Ebb { is_mixed: true },
+            Dialect::Eggbot => Spoken::Ebb { is_mixed: false },
             Dialect::Digits => Spoken::Digits,
             Dialect::Link => Spoken::Link { boot: clock_bits() },
         }

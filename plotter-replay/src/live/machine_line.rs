@@ -4,6 +4,7 @@ use super::line::{Line, lock};
 use super::pace::Pace;
 use super::simulated::{EXCHANGE_EVERY, SimulatedMachine, Telemetry};
 use crate::serial::{PortError, PortErrorKind};
+use crate::simulation::Seen;
 use core::fmt;
 use core::time::Duration;
 use std::io::{Sink, Write};
@@ -40,6 +41,13 @@ impl<W: Write> MachineLine<W> {
     #[must_use]
     pub fn telemetry(&self) -> Arc<Mutex<Telemetry>> {
         Arc::clone(&self.telemetry)
+    }
+
+    /// Where the machine stands.
+    #[must_use]
+    pub fn seen(&self) -> Seen {
+        let (machine, _) = &*lock(&self.inside);
+        machine.seen()
     }
 }
 

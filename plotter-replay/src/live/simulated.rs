@@ -9,7 +9,7 @@ use crate::log::{Event, Record};
 use crate::player::ControllerError;
 use crate::serial::{PortError, PortErrorKind};
 use crate::simulation::{
-    Act, ActError, Script, Seen, Simulation, Take, Told, World, belt, hpgl, marlin, steppers,
+    Act, ActError, Script, Seen, Simulation, Take, Told, World, belt, ebb, hpgl, marlin, steppers,
 };
 use core::fmt;
 use core::time::Duration;
@@ -97,6 +97,11 @@ pub enum Spoken {
     Marlin,
     /// HPGL, as a 7475A on a serial line: stepper motors that move a pen.
     Hpgl,
+    /// The commands of an EBB: stepper motors.
+    Ebb {
+        /// Whether both motors move the pen by one belt, as in the AxiDraw; else each moves an axis.
+        is_mixed: bool,
+    },
 }
 
 /// A machine whose time passes step by step, whatever its controller.
@@ -210,6 +215,10 @@ impl SimulatedMachine {
                     .require(MachineKind::Gantry, "what is simulated with digits or frames")
                     .map_err(refused)?;
                 gantry(machine, if let Spoken::Link { boot } = spoken { Some(boot) } else { None })
+            }
+            (Spoken::Ebb { is_mixed }, _) => {
+                machine.require(MachineKind::Steppers, "what is simulated behind an EBB").map_err(refused)?;
+                Box::new(ebb(machine, is_mixed))
             }
             (Spoken::Grbl | Spoken::MDraw | Spoken::Marlin | Spoken::Hpgl, _) => {
                 machine

@@ -4,7 +4,7 @@ use super::fronts::{Hpgl, Marlin};
 use super::machine::gate;
 use super::told::Told;
 use super::{
-    AnsweringBoard, Controller, EdgeSource, LinkedController, LinkedMachine, MachineController,
+    AnsweringBoard, Controller, EbbBoard, EdgeSource, LinkedController, LinkedMachine, MachineController,
     RecordingTraits,
 };
 use crate::log::{self, Header};
@@ -29,14 +29,14 @@ use std::path::Path;
 /// | `protocol` `grbl` | steppers | [`StepperPlotter`], Grbl's language |
 /// | `protocol` `marlin` | steppers | the same behind a front that answers as Marlin 2.1 |
 /// | `protocol` `hpgl` | steppers | the same behind a front that answers as a 7475A on a serial line |
+/// | `protocol` `ebb` | steppers | [`EbbBoard`] |
 /// | other | steppers | [`StepperPlotter`], mDraw's language |
 /// | `controller` `published` or `contouring` | none given | [`MachineController`] with that one |
 /// | other | DC motors | [`MachineController`] as the machine's description says |
 /// | `boot` | as of [`MachineController`] | [`LinkedController`]: a machine that spoke frames ([`LinkedMachine`]) |
 ///
 /// A machine that does not speak the header's `protocol` is refused: DC motors that each move an axis speak
-/// `digits` and `link`, a belt `counts`, steppers `grbl`, `mdraw`, `marlin` and
-/// `hpgl`.
+/// `digits` and `link`, a belt `counts`, steppers `grbl`, `mdraw`, `marlin`, `hpgl` and `ebb`.
 ///
 /// ```
 /// # use plotter_replay::{AnyController, Controller};
@@ -107,7 +107,7 @@ impl AnyController {
     #[must_use]
     pub fn named(header: &Header) -> Option<&str> {
         header.text("controller").or_else(|| match header.text("protocol") {
-            Some("grbl" | "mdraw" | "marlin" | "hpgl") => Some("stepper-plotter"),
+            Some("grbl" | "mdraw" | "marlin" | "hpgl" | "ebb") => Some("stepper-plotter"),
             Some("counts") => Some("marking-board"),
             _ => None,
         })
@@ -133,6 +133,9 @@ impl AnyController {
             }
             MachineKind::Steppers if header.text("protocol") == Some("hpgl") => {
                 Box::new(Hpgl::new(&machine)?)
+            }
+            MachineKind::Steppers if header.text("protocol") == Some("ebb") => {
+                Box::new(EbbBoard::switched_on())
             }
             MachineKind::Steppers => {
                 let dialect =
@@ -170,6 +173,7 @@ fn machine_of(header: &Header, machine: Option<&Machine>) -> Result<Machine, Con
         Some("mdraw") => Some((MachineKind::Steppers, "a log of the protocol \"mdraw\"")),
         Some("marlin") => Some((MachineKind::Steppers, "a log of the protocol \"marlin\"")),
         Some("hpgl") => Some((MachineKind::Steppers, "a log of the protocol \"hpgl\"")),
+        Some("ebb") => Some((MachineKind::Steppers, "a log of the protocol \"ebb\"")),
         None | Some("messages") => None,
         Some(other) => {
             return Err(ControllerError {

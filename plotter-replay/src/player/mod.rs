@@ -9,6 +9,7 @@ mod answering_board;
 mod any;
 mod board;
 mod controller;
+mod ebb_board;
 mod fronts;
 mod gantry;
 mod inputs;
@@ -28,6 +29,7 @@ mod unlinked;
 pub use answering_board::AnsweringBoard;
 pub use any::{AnyController, ControllerError};
 pub use controller::Controller;
+pub use ebb_board::EbbBoard;
 #[cfg(feature = "live")]
 pub(crate) use fronts::{Hpgl, Marlin};
 #[cfg(feature = "live")]

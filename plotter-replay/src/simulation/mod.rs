@@ -10,12 +10,14 @@
 
 mod act;
 mod belt;
+mod ebb;
 mod fronts;
 mod script;
 mod steppers;
 
 pub use act::{Act, ActError};
 pub(crate) use belt::belt;
+pub(crate) use ebb::ebb;
 pub(crate) use fronts::{hpgl, marlin};
 pub use script::{Script, ScriptError};
 pub(crate) use steppers::{Steppers, steppers};

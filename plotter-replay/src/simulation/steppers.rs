@@ -6,6 +6,7 @@ use crate::player::{ControllerError, limit};
 use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{Activity, Dialect, StepperPlotterSettings};
+use plotter_motion::kinematics::BeltSigns;
 use plotter_motion::plant::StepperPlant;
 use plotter_motion::{Axis, Direction, LimitSwitches, Machine, Pen, Point, SafetyGate};
 
@@ -119,6 +120,8 @@ impl Way {
 #[derive(Clone, Debug)]
 pub(crate) struct Steppers {
     plant: StepperPlant,
+    /// How the motors move the axes if not each its own.
+    belt: Option<BeltSigns>,
     ways: [Way; 2],
     told: LimitSwitches,
     paper_mm: Option<[f64; 2]>,
@@ -156,6 +159,7 @@ impl Steppers {
         let motor = machine.config().stepper_motor;
         Self {
             plant: StepperPlant::new(motor, motor),
+            belt: None,
             ways: Axis::BOTH.map(|axis| Way::of(machine, axis)),
             told: LimitSwitches::RELEASED,
             paper_mm: None,
@@ -164,8 +168,28 @@ impl Steppers {
         }
     }
 
-    fn motors(&self) -> [f64; 2] {
-        [self.plant.x.position_steps(), self.plant.y.position_steps()]
+    /// The same with both motors on one belt.
+    pub(super) fn with_belt(self, belt: Option<BeltSigns>) -> Self {
+        Self { belt, ..self }
+    }
+
+    /// Where the motors have moved the axes, steps.
+    fn moved(&self) -> [f64; 2] {
+        let (first, second) = (self.plant.x.position_steps(), self.plant.y.position_steps());
+        self.belt.map_or([first, second], |belt| {
+            let (x, y) = belt.twice_axes(first, second);
+            [x / 2.0, y / 2.0]
+        })
+    }
+
+    /// What a step of a motor moves the axes by, steps.
+    fn moved_by(&self, motor: Axis, sign: Direction) -> [f64; 2] {
+        let step = f64::from(sign.sign());
+        let (first, second) = if motor == Axis::X { (step, 0.0) } else { (0.0, step) };
+        self.belt.map_or([first, second], |belt| {
+            let (x, y) = belt.twice_axes(first, second);
+            [x / 2.0, y / 2.0]
+        })
     }
 
     fn way(&mut self, axis: Axis) -> &mut Way {
@@ -175,7 +199,7 @@ impl Steppers {
 
     fn at(&self) -> Point {
         let [x, y] = &self.ways;
-        let [x_steps, y_steps] = self.motors();
+        let [x_steps, y_steps] = self.moved();
         let mm = |way: &Way, steps: f64| (steps - way.slipped) / way.steps_per_mm;
         Point::new(mm(x, x_steps), mm(y, y_steps))
     }
@@ -193,11 +217,12 @@ impl World for Steppers {
     }
 
     fn step(&mut self, at: Duration, axis: Axis, sign: Direction) {
-        let [x, y] = self.motors();
-        let steps = if axis == Axis::X { x } else { y };
-        let way = self.way(axis);
-        if way.is_blocked(steps, sign) {
-            way.slipped += f64::from(sign.sign());
+        let (moved, by) = (self.moved(), self.moved_by(axis, sign));
+        for (way, (steps, by)) in self.ways.iter_mut().zip(moved.into_iter().zip(by)) {
+            let towards = if by < 0.0 { Direction::Minus } else { Direction::Plus };
+            if by != 0.0 && way.is_blocked(steps, towards) {
+                way.slipped += by;
+            }
         }
         self.plant.pulse(at, axis, sign);
     }
@@ -205,8 +230,8 @@ impl World for Steppers {
     fn go_on(&mut self, at: Duration, _: [i32; 2], pen: Option<Pen>) -> Vec<Event> {
         self.now = at;
         self.plant.run_to(at);
-        let motors = self.motors();
-        self.ways.iter_mut().zip(motors).for_each(|(way, steps)| way.look(steps));
+        let moved = self.moved();
+        self.ways.iter_mut().zip(moved).for_each(|(way, steps)| way.look(steps));
         let [x, y] = &self.ways;
         let now = LimitSwitches {
             x_min: x.pressed(Direction::Minus),

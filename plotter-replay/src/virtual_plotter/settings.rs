@@ -126,7 +126,7 @@ impl PlotterSettings {
             }
         };
         let counted_by = match header.text("protocol") {
-            Some("counts") => CountedBy::Edges,
+            Some("counts" | "ebb") => CountedBy::Edges,
             Some("link") => CountedBy::Link,
             Some("grbl") => CountedBy::Grbl,
             Some("mdraw") => CountedBy::MDraw,
@@ -134,7 +134,8 @@ impl PlotterSettings {
             Some("digits" | "messages") => CountedBy::Answers,
             None if !header.has("protocol") => CountedBy::Answers,
             _ => {
-                let expected = "digits, link, counts, grbl, mdraw, marlin or hpgl: what another one says is not known here";
+                let expected = "digits, link, counts, grbl, mdraw, marlin, hpgl or ebb: what another one says is not \
+                                known here";
                 return Err(SettingsError { key: "protocol", expected });
             }
         };

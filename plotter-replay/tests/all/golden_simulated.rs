@@ -85,8 +85,16 @@ fn sessions() -> Vec<(&'static str, Machine, Spoken, Header, &'static str, Talk)
         .with_decimal("p1_x_mm", 150.0)
         .with_decimal("p1_y_mm", 100.0)
         .with_decimal("reached_tolerance_counts", 42.0);
+    let ebb = talk(&[
+        ("V\rEM,1,1\rSP,0,50\r", "OK\r\nOK"),
+        ("XM,100,40,20\rLM,40000000,20,4000,40000000,-30,8000,3\r", "OK\r\nOK"),
+        ("SM,20,0,0\rSM,20,0,0\rQS\r", "80,-10"),
+        ("SP,1,150\rQM\rHM,1000\rSM,10,0,0\rSM,10,0,0\rQS\r", "0,0"),
+    ]);
+    let ebb_header = header(&steppers, "ebb", 0.05).with_text("belt_signs", "tracking-equations");
     let script = "1.55 hold x\n1.6 let x\n1.65 lose y 16\n";
     vec![
+        ("ebb", steppers, Spoken::Ebb { is_mixed: true }, ebb_header, "0.2 stop\n0.21 free\n", ebb),
         ("grbl", steppers, Spoken::Grbl, header(&steppers, "grbl", 0.05), script, grbl),
         ("mdraw", steppers, Spoken::MDraw, header(&steppers, "mdraw", 0.05), "", mdraw),
         ("counts", board, Spoken::Digits, board_header, "", digits),

@@ -21,6 +21,7 @@ mod driven;
 mod golden_presets;
 #[cfg(feature = "live")]
 mod golden_simulated;
+mod host_of_ebb;
 #[cfg(feature = "live")]
 mod hosts_of_hpgl;
 #[cfg(feature = "live")]
@@ -57,4 +58,6 @@ mod sim_link;
 mod simulate;
 #[cfg(all(feature = "cli", feature = "live", unix))]
 mod simulated_dialects;
+#[cfg(feature = "live")]
+mod simulated_ebb;
 mod virtual_plotter;

@@ -369,6 +369,22 @@ fn a_marking_board_draws_targets_in_digits_and_its_log_is_run_again() {
 }
 
 #[test]
+fn an_ebb_answers_on_a_pseudo_terminal_and_its_log_is_run_again() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let simulated = small(&["--dialect", "ebb", "--speed", "4"], here);
+    let mut port = simulated.open();
+    port.write_all(b"V\r").unwrap();
+    until(&mut *port, "EBBv13_and_above EB Firmware Version 2.8.1\r\n");
+    port.write_all(b"EM,1,1\rSP,0,100\rXM,200,40,20\rSM,10,0,0\rSM,10,0,0\rQS\r").unwrap();
+    until(&mut *port, "60,20\n\rOK\r\n");
+    std::thread::sleep(Duration::from_millis(400));
+    let (status, said) = simulated.end();
+    assert_eq!(status, Some(0), "{said}");
+    assert_runs_again(here);
+}
+
+#[test]
 fn a_script_that_is_none_is_refused_with_its_line() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();

@@ -12,11 +12,13 @@
 //! | [`Grbl`] | GRBL 1.1, GRBLHAL, `FluidNC` | bytes of its buffer | `?` | `0x18` |
 //! | [`Marlin`] | Marlin 2 | a line at a time, with number and checksum | `M114` at rest | `M112` |
 //! | [`Hpgl`] | pen plotters with HPGL on a serial line | free bytes of its buffer, `ESC .B` | `OA` at rest | none: `ESC .K` drops what is buffered |
+//! | [`EbbHost`] | AxiDraw, EggBot | a command at a time | `QS` | `ES` |
 //! | [`MDraw`] | Makeblock's XY plotter | a line at a time | `P` | none |
 //!
-//! All of them are [`LineHost`]s of a [`Language`]. A machine of the published digits, or of our link, has
+//! All of them but [`EbbHost`], which plans the motion itself, are [`LineHost`]s of a [`Language`]. A machine of the published digits, or of our link, has
 //! [`Host`](super::Host) and [`LinkHost`](super::LinkHost), whose targets are counts.
 
+mod ebb;
 mod finder;
 mod grbl;
 mod hpgl;
@@ -30,6 +32,7 @@ mod ring;
 mod trail;
 mod words;
 
+pub use ebb::{EbbHost, EbbHostSettings};
 pub use finder::{Finder, Finding, Tongue};
 pub use grbl::Grbl;
 pub use hpgl::Hpgl;
