@@ -15,10 +15,13 @@ use crate::serial::{Port, find};
 use clap::ValueEnum;
 use plotter_motion::config::{MachineKind, PenLift};
 use plotter_motion::gcode::{PenControl, WriteOptions};
+use plotter_motion::kinematics::{BeltSigns, Cartesian, CoreXy, Kinematics, MotorScale};
+use plotter_motion::protocol::ebb::EbbMotionSettings;
 use plotter_motion::protocol::hosts::{
-    Finder, Finding, Grbl, LineHost, LineHostSettings, MDraw, MachineHost, Tongue,
+    EbbHost, EbbHostSettings, Finder, Finding, Grbl, Hpgl, Language, LineHost, LineHostSettings, MDraw,
+    MachineHost, Marlin, Tongue,
 };
-use plotter_motion::{Machine, Pen, PenMove, PlotOp, Point};
+use plotter_motion::{Machine, Pen, PenMove, PlannerSettings, PlotOp, Point};
 use std::io::Write;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -33,7 +36,42 @@ pub(crate) enum Protocol {
     Grbl,
     /// Makeblock's XY plotter with mDraw's firmware
     Mdraw,
+    /// Marlin 2, with a pen on its first servo
+    Marlin,
+    /// HPGL on a serial pen plotter with a buffer, as HP's 7475A
+    Hpgl,
+    /// The EBB of the `AxiDraw`, both motors on one belt
+    Ebb,
+    /// The EBB of the `EggBot`, each motor with an axis
+    Eggbot,
 }
+
+impl Protocol {
+    const fn tongue(self) -> Option<Tongue> {
+        match self {
+            Self::Auto => None,
+            Self::Grbl => Some(Tongue::Grbl),
+            Self::Mdraw => Some(Tongue::MDraw),
+            Self::Marlin => Some(Tongue::Marlin),
+            Self::Hpgl => Some(Tongue::Hpgl),
+            Self::Ebb | Self::Eggbot => Some(Tongue::Ebb),
+        }
+    }
+}
+
+/// What a log of this language has for its protocol.
+const fn protocol_of(tongue: Tongue) -> &'static str {
+    match tongue {
+        Tongue::MDraw => "mdraw",
+        Tongue::Marlin => "marlin",
+        Tongue::Hpgl => "hpgl",
+        Tongue::Ebb => "ebb",
+        _ => "grbl",
+    }
+}
+
+/// How high above the sheet a pen on a Z axis is lifted, mm: clear of paper that curls.
+const LIFT_MM: f64 = 2.0;
 
 /// The operations of a drawing.
 type Ops = Box<dyn Iterator<Item = PlotOp> + Send>;
@@ -45,43 +83,80 @@ struct Known {
     errors: u64,
 }
 
+/// A host of lines, which goes on where an earlier one has left the drawing.
+fn of_lines<L: Language + Send + 'static>(
+    language: L,
+    ops: Ops,
+    left: Option<(u64, u64)>,
+) -> Box<dyn MachineHost + Send> {
+    let host = LineHost::new(language, LineHostSettings::default(), ops);
+    Box::new(match left {
+        Some((done, sent)) => host.resuming(done, sent),
+        None => host,
+    })
+}
+
+/// A host of an EBB.
+fn of_ebb<K: Kinematics + Clone + Send + 'static>(
+    kinematics: K,
+    machine: &Machine,
+    ops: Ops,
+    left: Option<(u64, u64)>,
+) -> Result<Box<dyn MachineHost + Send>, String> {
+    let pen_settle = Duration::from_secs_f64(machine.config().pen.settle_ms / 1e3);
+    let settings = EbbHostSettings {
+        planner: PlannerSettings::of(machine),
+        motion: EbbMotionSettings { pen_settle, ..EbbMotionSettings::default() },
+        ..EbbHostSettings::default()
+    };
+    let host = EbbHost::new(kinematics, settings, ops).map_err(|error| error.to_string())?;
+    Ok(Box::new(match left {
+        Some((done, sent)) => host.resuming(done, sent),
+        None => host,
+    }))
+}
+
 /// A host of the language, for this machine.
 fn host_of(
     tongue: Tongue,
+    is_mixed: bool,
     machine: &Machine,
     ops: Ops,
     left: Option<(u64, u64)>,
 ) -> Result<Box<dyn MachineHost + Send>, String> {
     let config = machine.config();
     let settle = Duration::from_secs_f64(config.pen.settle_ms / 1e3);
-    let pen = match config.pen.lifted_by {
-        PenLift::Height => {
-            PenControl::Height { up_mm: config.pen.down_z_mm + 2.0, down_mm: config.pen.down_z_mm }
-        }
-        _ => WriteOptions::default().pen,
-    };
-    let settings = LineHostSettings::default();
+    let height = PenControl::Height { up_mm: config.pen.down_z_mm + LIFT_MM, down_mm: config.pen.down_z_mm };
+    let is_height = config.pen.lifted_by == PenLift::Height;
+    let usual = WriteOptions { settle, feed_mm_s: config.planner.speed_mm_s, ..WriteOptions::default() };
+    // (once a run, and for as long as it takes)
+    let words = |head: &str, degrees: f64| &*format!("{head}{degrees:.0}").leak();
+    let (up_deg, down_deg) = (config.pen.up_deg, config.pen.down_deg);
     Ok(match tongue {
-        Tongue::Grbl => {
-            let options =
-                WriteOptions { pen, settle, feed_mm_s: config.planner.speed_mm_s, ..WriteOptions::default() };
-            let host = LineHost::new(Grbl::new(options), settings, ops);
-            Box::new(match left {
-                Some((done, sent)) => host.resuming(done, sent),
-                None => host,
-            })
+        Tongue::MDraw => of_lines(MDraw::new(words("M1 ", up_deg), words("M1 ", down_deg)), ops, left),
+        Tongue::Marlin => {
+            // The servo goes at once, in the middle of what is planned: it waits for that.
+            let servo = "G4 P0\nM280 P0 S";
+            let servo = PenControl::Commands { up: words(servo, up_deg), down: words(servo, down_deg) };
+            let pen = if is_height { height } else { servo };
+            of_lines(Marlin::new(WriteOptions { pen, ..usual }), ops, left)
         }
-        Tongue::MDraw => {
-            // (once a run, and for as long as it takes)
-            let degrees = |degrees: f64| format!("M1 {degrees:.0}");
-            let language = MDraw::new(degrees(config.pen.up_deg).leak(), degrees(config.pen.down_deg).leak());
-            let host = LineHost::new(language, settings, ops);
-            Box::new(match left {
-                Some((done, sent)) => host.resuming(done, sent),
-                None => host,
-            })
+        Tongue::Hpgl => of_lines(Hpgl::new(), ops, left),
+        Tongue::Ebb => {
+            let steps_per_mm = config.x.stepper.steps_per_mm;
+            if is_mixed {
+                let belt = CoreXy::new(BeltSigns::TrackingEquations, steps_per_mm);
+                of_ebb(belt.map_err(|error| error.to_string())?, machine, ops, left)?
+            } else {
+                let scale = |steps_per_mm| MotorScale { steps_per_mm, ..MotorScale::default() };
+                let axes = Cartesian::new(scale(steps_per_mm), scale(config.y.stepper.steps_per_mm));
+                of_ebb(axes.map_err(|error| error.to_string())?, machine, ops, left)?
+            }
         }
-        other => return Err(format!("the machine speaks {other}, which `live` has no host for yet")),
+        _ => {
+            let pen = if is_height { height } else { usual.pen };
+            of_lines(Grbl::new(WriteOptions { pen, ..usual }), ops, left)
+        }
     })
 }
 
@@ -94,6 +169,7 @@ impl Live {
     /// Does it with such a machine.
     pub(crate) fn run_lines(self, machine: &Machine, out: &mut impl Write) -> Done {
         let config = machine.config();
+        let is_mixed = self.protocol != Protocol::Eggbot;
         let drawing = self.drawing.as_deref().map(DrawingFile::open).transpose()?;
         let plotter = PlotterSettings::from_header(&lines_header(machine, "grbl"))
             .map_err(|error| error.to_string())?;
@@ -110,16 +186,21 @@ impl Live {
                 let name = find(name).map_err(|error| error.to_string())?;
                 let port = Port::open(&name, config.serial.baud).map_err(|error| error.to_string())?;
                 let line = PortLine::new(port).map_err(|error| error.to_string())?;
-                let tongue = match self.protocol {
-                    Protocol::Grbl => Tongue::Grbl,
-                    Protocol::Mdraw => Tongue::MDraw,
-                    Protocol::Auto => find_tongue(&line, &name, out)?,
+                let tongue = match self.protocol.tongue() {
+                    Some(tongue) => tongue,
+                    None => find_tongue(&line, &name, out)?,
                 };
                 (Arc::new(line), tongue, name, None)
             }
             None => {
-                let tongue = if self.protocol == Protocol::Mdraw { Tongue::MDraw } else { Tongue::Grbl };
-                let spoken = if tongue == Tongue::MDraw { Spoken::MDraw } else { Spoken::Grbl };
+                let tongue = self.protocol.tongue().unwrap_or(Tongue::Grbl);
+                let spoken = match tongue {
+                    Tongue::MDraw => Spoken::MDraw,
+                    Tongue::Marlin => Spoken::Marlin,
+                    Tongue::Hpgl => Spoken::Hpgl,
+                    Tongue::Ebb => Spoken::Ebb { is_mixed },
+                    _ => Spoken::Grbl,
+                };
                 let simulated =
                     SimulatedMachine::speaking(machine, spoken).map_err(|error| error.to_string())?;
                 let log =
@@ -128,6 +209,8 @@ impl Live {
                 (Arc::new(line), tongue, String::from("none: simulated in this program"), Some(log))
             }
         };
+        let header = lines_header(machine, protocol_of(tongue));
+        let plotter = PlotterSettings::from_header(&header).map_err(|error| error.to_string())?;
         let recording = match log {
             Some(log) => Recording::Machine(log),
             None => Recording::Line(self.lines_writer(machine, tongue, known.as_ref(), "host")?),
@@ -137,7 +220,7 @@ impl Live {
             Some(drawing) => Box::new(drawing.ops(counts_per_mm)?.filter_map(Result::ok)),
             None => Box::new(core::iter::empty()),
         };
-        let host = host_of(tongue, machine, ops, left)?;
+        let host = host_of(tongue, is_mixed, machine, ops, left)?;
         let has_stop = !host.stop_bytes().is_empty();
         let area_mm = [0.0, 0.0, config.area.width_mm, config.area.height_mm];
         self.describe_lines(&mut page, machine, tongue, &name, has_stop, known.as_ref());
@@ -319,8 +402,7 @@ impl Live {
         known: Option<&Known>,
         clock: &str,
     ) -> Result<log::FileWriter, String> {
-        let protocol = if tongue == Tongue::MDraw { "mdraw" } else { "grbl" };
-        let header = lines_header(machine, protocol).with_text("clock", clock);
+        let header = lines_header(machine, protocol_of(tongue)).with_text("clock", clock);
         let header = known.map_or(header.clone(), |known| known.mark.written_to(header));
         log::create(&self.output, &header).map_err(|error| format!("{}: {error}", self.output.display()))
     }
@@ -343,8 +425,8 @@ impl Live {
             format!("The machine on {port} speaks {tongue} and is taken for a {}.", config.name)
         };
         page.stops = String::from(if has_stop {
-            "The stop sends the byte 0x18 at once, past all lines: the controller stops its motors and forgets what it was \
-             sent. Resume unlocks it and lifts the pen; Resume again goes on with the drawing where it was stopped."
+            "The stop is sent at once, past all that waits: the controller stops its motors and forgets what it was sent. Resume \
+             unlocks it and lifts the pen; Resume again goes on with the drawing where it was stopped."
         } else {
             "This machine's language has NO emergency stop: the button sends nothing more, and the line under way is drawn to \
              its end. Keep your hand at the machine's own switch."

@@ -58,8 +58,8 @@ pub enum CountedBy {
     Grbl,
     /// The same of mDraw's language: the protocol `mdraw`.
     MDraw,
-    /// The machine's steps alone, of a session whose bytes are not read here: the protocols `marlin` and
-    /// `hpgl`. A log of the line, which has no steps, shows nothing.
+    /// The machine's steps alone, of a session whose bytes are not read here: the protocols `marlin`,
+    /// `hpgl` and `ebb`. A log of the line, which has no steps, shows nothing.
     Steps,
 }
 
@@ -126,11 +126,11 @@ impl PlotterSettings {
             }
         };
         let counted_by = match header.text("protocol") {
-            Some("counts" | "ebb") => CountedBy::Edges,
+            Some("counts") => CountedBy::Edges,
             Some("link") => CountedBy::Link,
             Some("grbl") => CountedBy::Grbl,
             Some("mdraw") => CountedBy::MDraw,
-            Some("marlin" | "hpgl") => CountedBy::Steps,
+            Some("marlin" | "hpgl" | "ebb") => CountedBy::Steps,
             Some("digits" | "messages") => CountedBy::Answers,
             None if !header.has("protocol") => CountedBy::Answers,
             _ => {

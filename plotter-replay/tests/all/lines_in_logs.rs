@@ -156,7 +156,7 @@ fn where_the_log_has_the_steps_they_are_the_way() {
 
 #[test]
 fn an_unknown_protocol_is_none_of_these() {
-    let error = PlotterSettings::from_header(&Header::new().with_text("protocol", "marlin")).unwrap_err();
+    let error = PlotterSettings::from_header(&Header::new().with_text("protocol", "klipper")).unwrap_err();
     assert_eq!(error.key, "protocol");
 }
 

@@ -71,7 +71,14 @@ fn info(log: &str, here: &Path) -> String {
 
 #[test]
 fn a_drawing_is_sent_to_a_machine_that_is_found_by_itself() {
-    for (dialect, language, extra) in [("grbl", "Grbl", None), ("mdraw", "mDraw", Some("mdraw"))] {
+    let languages = [
+        ("grbl", "Grbl", None),
+        ("mdraw", "mDraw", Some("mdraw")),
+        ("marlin", "Marlin", Some("marlin")),
+        ("hpgl", "HPGL", Some("hpgl")),
+        ("ebb", "EBB", None),
+    ];
+    for (dialect, language, extra) in languages {
         let directory = tempfile::tempdir().unwrap();
         let here = directory.path();
         let (_machine, port) = machine(dialect, "4", here);

@@ -410,7 +410,7 @@ fn a_session_of_grbl_is_known_drawn_and_its_controller_named() {
 fn an_unknown_protocol_is_said_and_taken_for_no_other() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
-    lines_log(here, "marlin", &[(0, true, "G28\n"), (900, false, "ok\n")]);
+    lines_log(here, "klipper", &[(0, true, "G28\n"), (900, false, "ok\n")]);
     for command in ["info", "render", "check", "replay"] {
         let ran = run(&[command, "lines.plog"], here);
         assert_eq!(ran.status, 2, "{command}: {}", ran.out);
