@@ -21,6 +21,7 @@ mod driven;
 mod golden_presets;
 #[cfg(feature = "live")]
 mod golden_simulated;
+#[cfg(feature = "live")]
 mod host_of_ebb;
 #[cfg(feature = "live")]
 mod hosts_of_hpgl;
