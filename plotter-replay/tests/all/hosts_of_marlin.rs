@@ -112,7 +112,7 @@ fn a_drawing_is_whole_though_answers_come_wrong_too() {
 }
 
 #[test]
-#[ignore = "long: a thousand drawings"]
+#[ignore = "a thousand drawings, minutes: cargo test --release -p plotter-replay --features cli,live --test all hosts_of_marlin:: -- --ignored"]
 fn a_thousand_drawings_are_whole_though_bytes_come_wrong_both_ways() {
     (1_000..2_000).for_each(|seed| is_whole_in_spite_of_damage(seed, if seed % 2 == 0 { 0 } else { 40 }));
 }

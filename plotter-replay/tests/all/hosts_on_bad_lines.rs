@@ -135,7 +135,7 @@ fn damage_to_the_place_is_seen_at_the_next_rest() {
 }
 
 #[test]
-#[ignore = "a thousand drawings in each language"]
+#[ignore = "a thousand drawings in each language, minutes: cargo test --release -p plotter-replay --features cli,live --test all hosts_on_bad_lines:: -- --ignored --nocapture"]
 fn of_a_thousand_drawings() {
     for spoken in [Spoken::Grbl, Spoken::MDraw] {
         let ends = ends(spoken, 1_000..2_000);
