@@ -419,6 +419,7 @@ impl Live {
         let config = machine.config();
         page.is_simulated = self.port.is_none();
         page.has_hand = true;
+        page.shows_done = matches!(tongue, Tongue::Marlin | Tongue::Hpgl | Tongue::Ebb);
         page.about = if page.is_simulated {
             format!("{} is SIMULATED: no motor turns, at up to {} times its time.", config.name, self.speed)
         } else {

@@ -338,6 +338,7 @@ impl<'a, W: Write> HostedEngine<'a, W> {
             hosted.is_down = status.pen == Pen::Down;
             hosted.feed_percent = status.feed_percent;
             hosted.rest = rest;
+            hosted.way_mm = self.drawing.as_ref().map(|table| table.way_mm(status.done));
         }
         view.sample(now);
     }

@@ -42,6 +42,8 @@ pub struct LivePage {
     pub facts: Vec<(String, String)>,
     /// Whether the machine is led by hand, too: the page has a panel for it.
     pub has_hand: bool,
+    /// Whether nothing on the line tells where the pen is on its way: the page shows what is known to be done.
+    pub shows_done: bool,
     settings: PlotterSettings,
     meant: Desired,
     /// The drawing in its order, with its pens and travels, along its way.
@@ -63,6 +65,7 @@ impl LivePage {
             stops: String::new(),
             facts: Vec::new(),
             has_hand: false,
+            shows_done: false,
             settings,
             meant: Desired::new(0.5 * settings.x_mm_per_pulse, MOST_DESIRED_POINTS),
             order: Trail::new(0.5 * settings.x_mm_per_pulse, MOST_DESIRED_POINTS),
@@ -140,11 +143,13 @@ impl LivePage {
         let um = |mm: f64| libm::round(mm * 1e3);
         let data = json!({
             "hand": self.has_hand,
+            "by_done": self.shows_done,
             "takes_s": self.takes.map(|time| time.as_secs_f64()),
             "order": {
                 "x": order.iter().map(|point| um(point.x_mm)).collect::<Vec<_>>(),
                 "y": order.iter().map(|point| um(point.y_mm)).collect::<Vec<_>>(),
                 "s": order.iter().map(|point| point.state).collect::<Vec<_>>(),
+                "way": order.iter().map(|point| point.at_us).collect::<Vec<_>>(),
             },
             "title": self.title,
             "simulated": self.is_simulated,

@@ -1,9 +1,9 @@
 //! A session in a terminal, for who is logged in from elsewhere.
 
 use super::view::View;
-use super::{Command, Session};
+use super::{Command, Hand, Session};
 use core::time::Duration;
-use plotter_motion::Pen;
+use plotter_motion::{Pen, Point, Vec2};
 use ratatui::Frame;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers};
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -31,13 +31,17 @@ pub struct Heading {
 }
 
 /// Shows a session in the terminal until it ends or the user quits; says whether he did. Enter starts, space
-/// pauses and resumes, Esc stops, c clears, q quits.
+/// pauses and resumes, Esc stops, c clears, q quits. A machine that is led by lines is led by hand, too: the
+/// arrows move it by the step that 1, 2 and 3 choose (0.1, 1, 10 mm), u and d lift and lower its pen, h leads it
+/// home, l unlocks it, n draws the next operation only, o says that it is at the origin.
 ///
 /// # Errors
 ///
 /// The terminal cannot be read or written.
 pub fn run(session: &Session, heading: &Heading) -> io::Result<bool> {
     let mut terminal = ratatui::try_init()?;
+    let is_led = session.look(|view| view.hosted.is_some());
+    let mut step_mm = 10.0;
     let result = (|| {
         loop {
             session.look(|view| terminal.draw(|frame| draw(frame, view, heading)).map(|_| ()))?;
@@ -62,12 +66,47 @@ pub fn run(session: &Session, heading: &Heading) -> io::Result<bool> {
                     let running = session.state().name() == "running";
                     session.command(if running { Command::Pause } else { Command::Resume });
                 }
+                code if is_led => {
+                    if let Some(hand) = by_hand(code, &mut step_mm) {
+                        session.command(Command::Hand(hand));
+                    }
+                }
                 _ => {}
             }
         }
     })();
     ratatui::try_restore()?;
     result
+}
+
+/// Speed of a movement by hand, mm/s: slow enough for a hand at the switch.
+const HAND_MM_S: f64 = 30.0;
+
+/// What a key does to a machine by hand; some choose the step.
+fn by_hand(key: KeyCode, step_mm: &mut f64) -> Option<Hand> {
+    let jog = |x: f64, y: f64| Some(Hand::Jog(Vec2::new(x, y), HAND_MM_S));
+    let step = *step_mm;
+    match key {
+        KeyCode::Left => jog(-step, 0.0),
+        KeyCode::Right => jog(step, 0.0),
+        KeyCode::Up => jog(0.0, step),
+        KeyCode::Down => jog(0.0, -step),
+        KeyCode::Char('u') => Some(Hand::Pen(Pen::Up)),
+        KeyCode::Char('d') => Some(Hand::Pen(Pen::Down)),
+        KeyCode::Char('h') => Some(Hand::Home),
+        KeyCode::Char('l') => Some(Hand::Unlock),
+        KeyCode::Char('n') => Some(Hand::Next),
+        KeyCode::Char('o') => Some(Hand::StandsAt(Point::ORIGIN)),
+        KeyCode::Char(number @ '1'..='3') => {
+            *step_mm = match number {
+                '1' => 0.1,
+                '2' => 1.0,
+                _ => 10.0,
+            };
+            None
+        }
+        _ => None,
+    }
 }
 
 fn draw(frame: &mut Frame<'_>, view: &View, heading: &Heading) {
@@ -86,8 +125,8 @@ fn draw(frame: &mut Frame<'_>, view: &View, heading: &Heading) {
 fn draw_heading(frame: &mut Frame<'_>, area: Rect, view: &View, heading: &Heading) {
     let [words, progress] = Layout::vertical([Constraint::Length(2), Constraint::Length(1)]).areas(area);
     let colour = match view.state.name() {
-        "stopped" | "failed" => Color::Red,
-        "paused" | "ready" => Color::Yellow,
+        "stopped" | "locked" | "failed" => Color::Red,
+        "paused" | "ready" | "connecting" => Color::Yellow,
         _ => Color::Green,
     };
     let kind = if heading.is_simulated { "SIMULATED " } else { "REAL MACHINE " };
@@ -103,8 +142,15 @@ fn draw_heading(frame: &mut Frame<'_>, area: Rect, view: &View, heading: &Headin
         super::State::Failed(why) => why.clone(),
         _ => view.messages.back().map_or_else(String::new, |(_, text)| text.clone()),
     };
-    let keys = "Esc EMERGENCY STOP  Enter start  Space pause/resume  c clear  q quit";
-    let second = if message.is_empty() { keys.to_owned() } else { message };
+    let keys = if view.hosted.is_some() {
+        "Esc EMERGENCY STOP  Enter start  Space pause/resume  arrows 1 2 3 u d h l n o by hand  q quit"
+    } else {
+        "Esc EMERGENCY STOP  Enter start  Space pause/resume  c clear  q quit"
+    };
+    // What a person has to do comes before what was said last.
+    let wants = view.hosted.as_ref().map(|hosted| hosted.wants.clone()).unwrap_or_default();
+    let second =
+        [wants, message].into_iter().find(|words| !words.is_empty()).unwrap_or_else(|| keys.to_owned());
     frame.render_widget(Paragraph::new(vec![first, Line::raw(second)]), words);
     if let Some(plan) = view.plan {
         #[expect(clippy::cast_precision_loss, reason = "targets below 2^53")]
@@ -129,7 +175,7 @@ fn draw_sheet(frame: &mut Frame<'_>, area: Rect, view: &View, heading: &Heading)
         ((x1 - x0).max(1.0) / wide.max(1.0)).max((y1 - y0).max(1.0) / (2.0 * high.max(1.0))) * 1.02;
     let (half_x, half_y) = (per_place * wide / 2.0, per_place * high);
     let (cx, cy) = (f64::midpoint(x0, x1), f64::midpoint(y0, y1));
-    let at = view.plotter.position();
+    let at = view.position();
     let canvas = Canvas::default()
         .block(Block::bordered().title("sheet"))
         .marker(Marker::Braille)
@@ -147,14 +193,14 @@ fn draw_sheet(frame: &mut Frame<'_>, area: Rect, view: &View, heading: &Heading)
                 before = Some((point.x_mm, point.y_mm));
             }
             context.layer();
-            let color = if view.plotter.pen() == Pen::Down { Color::Red } else { Color::Yellow };
+            let color = if view.is_down() { Color::Red } else { Color::Yellow };
             context.draw(&Circle { x: at.x, y: at.y, radius: per_place, color });
         });
     frame.render_widget(canvas, area);
 }
 
 fn draw_numbers(frame: &mut Frame<'_>, area: Rect, view: &View) {
-    let at = view.plotter.position();
+    let at = view.position();
     let next = view.plotter.next_target();
     let [vx, vy] = view.speed_mm_s();
     let number = |value: Option<f64>, unit: &str| {
@@ -166,7 +212,7 @@ fn draw_numbers(frame: &mut Frame<'_>, area: Rect, view: &View) {
     };
     let rows = [
         ("time", format!("{:.2} s", view.now.as_secs_f64())),
-        ("pen", String::from(if view.plotter.pen() == Pen::Down { "down" } else { "up" })),
+        ("pen", String::from(if view.is_down() { "down" } else { "up" })),
         ("position x", number(Some(at.x), "mm")),
         ("position y", number(Some(at.y), "mm")),
         ("next x", number(next.map(|next| next.x), "mm")),
@@ -269,6 +315,16 @@ mod tests {
         let view = view();
         terminal.draw(|frame| draw(frame, &view, &heading)).unwrap();
         insta::assert_snapshot!(terminal.backend());
+    }
+
+    #[test]
+    fn keys_lead_a_machine_by_hand() {
+        let mut step_mm = 10.0;
+        assert_eq!(by_hand(KeyCode::Left, &mut step_mm), Some(Hand::Jog(Vec2::new(-10.0, 0.0), 30.0)));
+        assert_eq!(by_hand(KeyCode::Char('1'), &mut step_mm), None);
+        assert_eq!(by_hand(KeyCode::Up, &mut step_mm), Some(Hand::Jog(Vec2::new(0.0, 0.1), 30.0)));
+        assert_eq!(by_hand(KeyCode::Char('u'), &mut step_mm), Some(Hand::Pen(Pen::Up)));
+        assert_eq!(by_hand(KeyCode::Char('x'), &mut step_mm), None);
     }
 
     #[test]

@@ -171,6 +171,12 @@ impl Timetable {
         Duration::try_from_secs_f64(((total_s - now_s) * share).max(0.0)).unwrap_or_default()
     }
 
+    /// How far the pen has gone when so many operations are done, mm.
+    pub(super) fn way_mm(&self, done: u64) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "operations below 2^53")]
+        self.ways.at(done as f64)
+    }
+
     /// When so many operations are done, s.
     fn time_s(&self, done: u64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "operations below 2^53")]

@@ -42,6 +42,8 @@ pub(super) struct Hosted {
     pub(super) feed_percent: u8,
     /// How long the rest of the drawing takes.
     pub(super) rest: Option<Duration>,
+    /// How far along the drawing what is done goes, mm.
+    pub(super) way_mm: Option<f64>,
 }
 
 /// Everything that a page or a terminal shows.
@@ -242,6 +244,7 @@ impl View {
             "next": next.map(|next| [next.x, next.y]),
             "pen": if self.is_down() { "down" } else { "up" },
             "wants": self.hosted.as_ref().map(|hosted| &hosted.wants),
+            "way_mm": self.hosted.as_ref().and_then(|hosted| hosted.way_mm),
             "feed_percent": self.hosted.as_ref().map(|hosted| hosted.feed_percent),
             "speed_mm_s": self.speed_mm_s(),
             "duty": self.duty,

@@ -387,13 +387,18 @@ fn a_session_is_the_same_at_any_speed_and_sends_nothing_twice() {
     }
 }
 
-/// What the server answers to a request.
+/// What the server answers to a request for a page.
 fn ask(address: &str, path: &str, headers: &str) -> String {
+    ask_by("GET", address, path, headers)
+}
+
+/// The same with another method: the head of the answer at least.
+fn ask_by(method: &str, address: &str, path: &str, headers: &str) -> String {
     let host = address.strip_prefix("http://").unwrap().split('/').next().unwrap();
     let mut stream = TcpStream::connect(host).unwrap();
     let host_line = if headers.contains("Host:") { String::new() } else { format!("Host: {host}\r\n") };
     // At once, and not always to its end: who is refused at the first line is not listened to any further.
-    let _ = stream.write_all(format!("GET {path} HTTP/1.1\r\n{host_line}{headers}\r\n").as_bytes());
+    let _ = stream.write_all(format!("{method} {path} HTTP/1.1\r\n{host_line}{headers}\r\n").as_bytes());
     stream.set_read_timeout(Some(FOR_EVER)).unwrap();
     let (mut answer, mut part) = (Vec::new(), [0; 1_024]);
     while !answer.windows(2).any(|end| end == b"\r\n") {
@@ -419,6 +424,8 @@ fn only_who_knows_the_token_and_comes_from_this_page_gets_in() {
         |path: &str, headers: &str| ask(&address, path, headers).chars().skip(9).take(3).collect::<String>();
     assert_eq!(path.len(), 33, "128 bits in hex");
     assert_eq!(status(&format!("/{path}"), ""), "200");
+    assert!(ask_by("HEAD", &address, &format!("/{path}"), "").starts_with("HTTP/1.1 200 OK\r\n"));
+    assert!(ask_by("POST", &address, &format!("/{path}"), "").starts_with("HTTP/1.1 404"));
     assert_eq!(status("/", ""), "403");
     assert_eq!(status(&format!("/{}/", "0".repeat(32)), ""), "403");
     assert_eq!(status(&format!("/{}", &path[..31]), ""), "403");

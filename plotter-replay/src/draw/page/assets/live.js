@@ -35,6 +35,11 @@ const sheet = new Sheet($("sheet"), (canvas) => {
   strokes(way, painted, way.length, { context: ink, X: canvas.X, Y: canvas.Y, ratio }, styles);
   painted = way.length;
   context.drawImage(layer, 0, 0);
+  if (data.by_done && last) { // nothing tells the way: what is done is drawn as it was meant
+    let done = 0;
+    while (done < order.length && data.order.way[done] <= last.way_mm * 1e3 + 0.5) done++;
+    strokes({ x: [0, ...order.x], y: [0, ...order.y], s: [0, ...order.s] }, 1, done + 1, canvas, styles);
+  }
   if (latest && way.length) { // the end that is not settled
     const end = { x: [way.x.at(-1), latest[0]], y: [way.y.at(-1), latest[1]], s: [0, latest[2]] };
     strokes(end, 1, 2, canvas, styles);
