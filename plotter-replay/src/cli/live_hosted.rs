@@ -221,9 +221,8 @@ impl Live {
             None => Box::new(core::iter::empty()),
         };
         let host = host_of(tongue, is_mixed, machine, ops, left)?;
-        let has_stop = !host.stop_bytes().is_empty();
         let area_mm = [0.0, 0.0, config.area.width_mm, config.area.height_mm];
-        self.describe_lines(&mut page, machine, tongue, &name, has_stop, known.as_ref());
+        self.describe_lines(&mut page, machine, tongue, &name, known.as_ref());
         let settings = SessionSettings { plotter, baud: config.serial.baud, ..SessionSettings::default() };
         let targets = known.as_ref().map_or(0, |known| known.table.plan().targets);
         let has_drawing = known.is_some();
@@ -413,7 +412,6 @@ impl Live {
         machine: &Machine,
         tongue: Tongue,
         port: &str,
-        has_stop: bool,
         known: Option<&Known>,
     ) {
         let config = machine.config();
@@ -425,12 +423,23 @@ impl Live {
         } else {
             format!("The machine on {port} speaks {tongue} and is taken for a {}.", config.name)
         };
-        page.stops = String::from(if has_stop {
-            "The stop is sent at once, past all that waits: the controller stops its motors and forgets what it was sent. Resume \
-             unlocks it and lifts the pen; Resume again goes on with the drawing where it was stopped."
-        } else {
-            "This machine's language has NO emergency stop: the button sends nothing more, and the line under way is drawn to \
-             its end. Keep your hand at the machine's own switch."
+        page.stops = String::from(match tongue {
+            Tongue::Grbl | Tongue::Ebb => {
+                "The stop is sent at once, past all that waits: the controller stops its motors and forgets what it was sent. \
+                 Resume unlocks it and lifts the pen; Resume again goes on with the drawing where it was stopped."
+            }
+            Tongue::Marlin => {
+                "The stop sends M112 at once, past all that waits: the controller halts until it is reset at its own button or \
+                 switched off and on, and has lost its place then. Lead it home, or say where it stands, before it goes on."
+            }
+            Tongue::Hpgl => {
+                "This machine's language has NO emergency stop: the button drops what the plotter's buffer holds, and the line under \
+                 way is drawn to its end. Keep your hand at the machine's own switch."
+            }
+            _ => {
+                "This machine's language has NO emergency stop: the button sends nothing more, and the line under way is drawn to \
+                 its end. Keep your hand at the machine's own switch."
+            }
         });
         let fact = |name: &str, value: String| (name.to_owned(), value);
         page.facts = vec![
