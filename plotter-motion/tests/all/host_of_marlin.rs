@@ -148,7 +148,6 @@ fn lines_go_out_one_at_a_time_with_number_and_checksum() {
             "G1 X2 Y2",
             "G4 P0",
             "M280 P0 S160",
-            "G0 X2 Y2",
             "G4 P0",
             "M114"
         ]

@@ -1,8 +1,9 @@
 //! [`Grbl`]: what GRBL 1.1 speaks, and with it GRBLHAL and `FluidNC`.
 
+use super::gcode_words::GcodeWords;
 use super::language::{Answer, Doing, Language, OpText, Report};
 use super::{InFlight, MachineLimits};
-use crate::gcode::{self, PenControl, WriteError, WriteOptions};
+use crate::gcode::{WriteError, WriteOptions};
 use crate::{PlotOp, Point, Vec2};
 use core::fmt::Write as _;
 
@@ -14,8 +15,7 @@ const RX_BYTES: usize = 127;
 /// byte past all lines; `?` is answered by a report at once.
 #[derive(Clone, Debug)]
 pub struct Grbl<'a> {
-    writer: gcode::Writer<'a, OpText>,
-    options: WriteOptions<'a>,
+    words: GcodeWords<'a>,
     /// From the machine's own origin to that of the sheet, mm.
     offset: Vec2,
     limits: MachineLimits,
@@ -25,10 +25,8 @@ impl<'a> Grbl<'a> {
     /// With these words for the pen. Coordinates have three decimals, whatever the options say: arcs need them.
     #[must_use]
     pub fn new(options: WriteOptions<'a>) -> Self {
-        let options = WriteOptions { decimals: 3, ..options };
         Self {
-            writer: gcode::Writer::with_options(OpText::default(), options),
-            options,
+            words: GcodeWords::new(WriteOptions { decimals: 3, ..options }),
             offset: Vec2::default(),
             limits: MachineLimits::default(),
         }
@@ -114,21 +112,15 @@ impl Language for Grbl<'_> {
     const END_JOG: Option<u8> = Some(0x85);
 
     fn begin(&mut self) {
-        self.writer = gcode::Writer::with_options(OpText::default(), self.options);
+        self.words.begin();
     }
 
     fn write(&mut self, op: PlotOp, out: &mut OpText) -> Result<(), WriteError> {
-        self.writer.out_mut().clear();
-        let written = self.writer.push(op);
-        out.clone_from(self.writer.out_mut());
-        written
+        self.words.write(op, out)
     }
 
     fn lift(&mut self, _: Point, out: &mut OpText) -> Result<(), WriteError> {
-        self.writer.out_mut().clear();
-        let written = self.writer.lift();
-        out.clone_from(self.writer.out_mut());
-        written
+        self.words.lift(out)
     }
 
     fn jog(&mut self, _: Point, by: Vec2, feed_mm_s: f64, out: &mut OpText) -> bool {
@@ -178,9 +170,7 @@ impl Language for Grbl<'_> {
     }
 
     fn pen_down_at(&mut self, number: u16) -> bool {
-        let PenControl::Spindle { down } = &mut self.options.pen else { return false };
-        *down = number.into();
-        true
+        self.words.pen_down_at(number)
     }
 
     fn fits(&self, flight: InFlight, bytes: usize) -> bool {

@@ -1,8 +1,9 @@
 //! [`Marlin`]: what machines with Marlin's firmware speak.
 
+use super::gcode_words::GcodeWords;
 use super::language::{Answer, Doing, Language, OpText, Report};
 use super::{InFlight, MOST_LINE, Words};
-use crate::gcode::{self, DwellUnit, PenControl, WriteError, WriteOptions};
+use crate::gcode::{DwellUnit, WriteError, WriteOptions};
 use crate::{PlotOp, Point, Vec2};
 use core::fmt::Write as _;
 use core::time::Duration;
@@ -47,8 +48,7 @@ const HALTED: u16 = 112;
 /// Source: Marlin's documentation of G-codes; `gcode/queue.cpp` and `feature/e_parser.h` of its source.
 #[derive(Clone, Debug)]
 pub struct Marlin<'a> {
-    writer: gcode::Writer<'a, OpText>,
-    options: WriteOptions<'a>,
+    words: GcodeWords<'a>,
     /// The machine is to count lines from the next one on.
     counts_anew: bool,
     /// What it has said of the line that it answers next.
@@ -74,8 +74,7 @@ impl<'a> Marlin<'a> {
     pub fn new(options: WriteOptions<'a>) -> Self {
         let options = WriteOptions { decimals: 3, dwell_unit: DwellUnit::Milliseconds, ..options };
         Self {
-            writer: gcode::Writer::with_options(OpText::default(), options),
-            options,
+            words: GcodeWords::new(options),
             counts_anew: true,
             complaint: None,
             unknown: Words::default(),
@@ -87,6 +86,12 @@ impl<'a> Marlin<'a> {
         self.complaint = Some(Complaint::Line);
         self.unknown.clear();
         answer
+    }
+
+    fn say_words(&mut self, text: &OpText, out: &mut OpText) -> Result<(), WriteError> {
+        out.clear();
+        let text = core::str::from_utf8(text.as_bytes()).unwrap_or_default();
+        if text.is_empty() || self.say(text, out) { Ok(()) } else { Err(WriteError::Output) }
     }
 
     /// Writes lines, behind the one that sets their number where that is due. Says whether they found room.
@@ -106,7 +111,7 @@ impl Language for Marlin<'_> {
     const PATIENCE: Duration = Duration::from_secs(5);
 
     fn begin(&mut self) {
-        self.writer = gcode::Writer::with_options(OpText::default(), self.options);
+        self.words.begin();
     }
 
     fn count_anew(&mut self) {
@@ -114,15 +119,15 @@ impl Language for Marlin<'_> {
     }
 
     fn write(&mut self, op: PlotOp, out: &mut OpText) -> Result<(), WriteError> {
-        self.writer.out_mut().clear();
-        self.writer.push(op)?;
-        out.clear();
-        let written = *self.writer.out_mut();
-        let text = core::str::from_utf8(written.as_bytes()).unwrap_or_default();
-        if !text.is_empty() && !self.say(text, out) {
-            return Err(WriteError::Output);
-        }
-        Ok(())
+        let mut text = OpText::default();
+        self.words.write(op, &mut text)?;
+        self.say_words(&text, out)
+    }
+
+    fn lift(&mut self, _: Point, out: &mut OpText) -> Result<(), WriteError> {
+        let mut text = OpText::default();
+        self.words.lift(&mut text)?;
+        self.say_words(&text, out)
     }
 
     fn jog(&mut self, _: Point, by: Vec2, feed_mm_s: f64, out: &mut OpText) -> bool {
@@ -130,7 +135,7 @@ impl Language for Marlin<'_> {
         let feed_mm_min = (60.0 * feed_mm_s).max(1.0);
         let written = writeln!(text, "G91\nG0 X{:.3} Y{:.3} F{feed_mm_min:.0}\nG90\nG4 P0\nM114", by.x, by.y);
         // What is written next does not know of this place and speed.
-        self.writer = gcode::Writer::with_options(OpText::default(), self.options);
+        self.words.begin();
         written.is_ok() && self.say(core::str::from_utf8(text.as_bytes()).unwrap_or_default(), out)
     }
 
@@ -153,9 +158,7 @@ impl Language for Marlin<'_> {
     }
 
     fn pen_down_at(&mut self, number: u16) -> bool {
-        let PenControl::Spindle { down } = &mut self.options.pen else { return false };
-        *down = number.into();
-        true
+        self.words.pen_down_at(number)
     }
 
     fn frame(&self, number: u64, line: &[u8], out: &mut Words<MOST_LINE>) -> bool {

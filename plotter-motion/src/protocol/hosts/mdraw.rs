@@ -1,8 +1,9 @@
 //! [`MDraw`]: what Makeblock's XY plotter with mDraw's firmware speaks.
 
 use super::InFlight;
+use super::gcode_words::GcodeWords;
 use super::language::{Answer, Doing, Language, OpText, Report};
-use crate::gcode::{self, PenControl, WriteError, WriteOptions};
+use crate::gcode::{PenControl, WriteError, WriteOptions};
 use crate::{PlotOp, Point, Vec2};
 use core::fmt::Write as _;
 use core::time::Duration;
@@ -11,8 +12,7 @@ use core::time::Duration;
 /// has no word for a stop, a hold or a speed, and no checksum; `P` tells the place.
 #[derive(Clone, Debug)]
 pub struct MDraw<'a> {
-    writer: gcode::Writer<'a, OpText>,
-    options: WriteOptions<'a>,
+    words: GcodeWords<'a>,
 }
 
 impl<'a> MDraw<'a> {
@@ -26,7 +26,7 @@ impl<'a> MDraw<'a> {
             decimals: 2,
             ..WriteOptions::default()
         };
-        Self { writer: gcode::Writer::with_options(OpText::default(), options), options }
+        Self { words: GcodeWords::new(options) }
     }
 }
 
@@ -36,21 +36,15 @@ impl Language for MDraw<'_> {
     const PATIENCE: Duration = Duration::from_secs(60);
 
     fn begin(&mut self) {
-        self.writer = gcode::Writer::with_options(OpText::default(), self.options);
+        self.words.begin();
     }
 
     fn write(&mut self, op: PlotOp, out: &mut OpText) -> Result<(), WriteError> {
-        self.writer.out_mut().clear();
-        let written = self.writer.push(op);
-        out.clone_from(self.writer.out_mut());
-        written
+        self.words.write(op, out)
     }
 
     fn lift(&mut self, _: Point, out: &mut OpText) -> Result<(), WriteError> {
-        self.writer.out_mut().clear();
-        let written = self.writer.lift();
-        out.clone_from(self.writer.out_mut());
-        written
+        self.words.lift(out)
     }
 
     fn jog(&mut self, at: Point, by: Vec2, _: f64, out: &mut OpText) -> bool {

@@ -15,11 +15,13 @@
 //! | [`EbbHost`] | AxiDraw, EggBot | a command at a time | `QS` | `ES` |
 //! | [`MDraw`] | Makeblock's XY plotter | a line at a time | `P` | none |
 //!
-//! All of them but [`EbbHost`], which plans the motion itself, are [`LineHost`]s of a [`Language`]. A machine of the published digits, or of our link, has
-//! [`Host`](super::Host) and [`LinkHost`](super::LinkHost), whose targets are counts.
+//! All of them but [`EbbHost`], which plans the motion itself, are [`LineHost`]s of a [`Language`]. A machine of
+//! the published digits, or of our link, has [`Host`](super::Host) and [`LinkHost`](super::LinkHost), whose targets
+//! are counts.
 
 mod ebb;
 mod finder;
+mod gcode_words;
 mod grbl;
 mod hpgl;
 mod language;
