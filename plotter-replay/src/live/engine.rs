@@ -1,11 +1,12 @@
 //! [`Engine`]: the loop of a session: commands, host, line.
 
+use super::journal::Journal;
 use super::line::lock;
 use super::machine_log::Recording;
 use super::sender::Sender;
 use super::session::Shared;
 use super::{Command, SessionSettings, State, Telemetry};
-use crate::log::{Event, Record};
+use crate::log::Event;
 use crate::serial::PortError;
 use core::time::Duration;
 use plotter_motion::protocol::{HostEvent, HostNotice, Order};
@@ -13,20 +14,13 @@ use plotter_motion::{PenMove, StepPoint};
 use std::io::Write;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
-use std::time::Instant;
 
 /// Longest time for which the line is listened to at once, in its time; so long ahead it takes bytes.
 const LISTEN: Duration = Duration::from_millis(2);
-/// How often the response is sampled, by the clock.
-const SAMPLE_EVERY: Duration = Duration::from_millis(20);
-
 pub(super) struct Engine<'a, W: Write> {
     host: Option<Sender>,
-    recorder: Option<Recording<W>>,
+    journal: Journal<'a, W>,
     telemetry: Option<Arc<Mutex<Telemetry>>>,
-    began: Instant,
-    /// When the response was sampled last.
-    sampled: Option<Instant>,
     /// Time in which the host's clock stood still.
     frozen: Duration,
     frozen_since: Option<Duration>,
@@ -34,7 +28,6 @@ pub(super) struct Engine<'a, W: Write> {
     under_way: Option<(PenMove, Duration)>,
     /// The last target.
     at: StepPoint,
-    last: Duration,
     /// What ends the drawing before its end.
     failure: Option<String>,
     /// Whether a person has stopped it here, and has not let it go on.
@@ -55,15 +48,12 @@ impl<'a, W: Write> Engine<'a, W> {
     ) -> Self {
         Self {
             host,
-            recorder,
+            journal: Journal::new(recorder, shared),
             telemetry,
-            began: Instant::now(),
-            sampled: None,
             frozen: Duration::ZERO,
             frozen_since: None,
             under_way: None,
             at: StepPoint::default(),
-            last: Duration::ZERO,
             failure: None,
             wants_stop: false,
             is_resumed: false,
@@ -81,25 +71,11 @@ impl<'a, W: Write> Engine<'a, W> {
                 Err(error) => break State::Failed(error.to_string()),
             }
         };
-        if let State::Failed(why) = &end {
-            self.take(Event::Note(format!("the session failed: {why}")));
-        }
-        let now = self.now();
-        let kept = self.recorder.take().map(|recorder| recorder.finish());
-        let mut view = lock(&self.shared.view);
-        match kept {
-            Some(Err(error)) => view.recording = format!("stopped: {error}"),
-            Some(Ok(())) => view.recording = String::from("complete"),
-            None => {}
-        }
-        view.duty = None;
-        view.sample(now);
-        view.state = end;
-        self.shared.finished.notify_all();
+        self.journal.end(end, |view| view.duty = None);
     }
 
     fn now(&self) -> Duration {
-        self.shared.line.now().unwrap_or_else(|| self.began.elapsed())
+        self.journal.now()
     }
 
     /// Once round: commands, host, line. The end, if that is it.
@@ -312,40 +288,20 @@ impl<'a, W: Write> Engine<'a, W> {
 
     /// Something happened: on the screen, and into the recording.
     fn take(&mut self, event: Event) {
-        self.last = self.now().max(self.last);
-        let record = Record { time: self.last, event };
-        let mut view = lock(&self.shared.view);
-        view.push(&record);
-        if let Some(recorder) = &mut self.recorder
-            && let Err(error) = recorder.write(&record)
-        {
-            // The drawing goes on; what was written stays.
-            view.recording = format!("stopped: {error}");
-            view.message(record.time, format!("recording stopped, drawing goes on: {error}"));
-            self.recorder = None;
-        }
+        self.journal.take(event);
     }
 
     /// Now and then: a sample of the response, and the recording written through.
     fn look(&mut self) {
-        let clock = Instant::now();
-        if self.sampled.is_some_and(|last| clock.saturating_duration_since(last) < SAMPLE_EVERY) {
+        if !self.journal.is_due() {
             return;
         }
-        self.sampled = Some(clock);
-        let now = self.now();
-        let mut view = lock(&self.shared.view);
-        if let Some(telemetry) = &self.telemetry {
-            let duty = lock(telemetry).duty;
-            let [x, y] = self.settings.pwm_steps.map(|steps| f64::from(steps.max(1)));
-            view.duty = Some([f64::from(duty[0]) / x, f64::from(duty[1]) / y]);
-        }
-        view.sample(now);
-        if let Some(recorder) = &mut self.recorder
-            && let Err(error) = recorder.tick(now)
-        {
-            view.recording = format!("stopped: {error}");
-            self.recorder = None;
-        }
+        let duty = self.telemetry.as_ref().map(|telemetry| lock(telemetry).duty);
+        let [x, y] = self.settings.pwm_steps.map(|steps| f64::from(steps.max(1)));
+        self.journal.sample(|view| {
+            if let Some(duty) = duty {
+                view.duty = Some([f64::from(duty[0]) / x, f64::from(duty[1]) / y]);
+            }
+        });
     }
 }

@@ -1,25 +1,24 @@
 //! [`HostedEngine`]: the loop of a session with a machine that is led by lines of text.
 
+use super::journal::Journal;
 use super::line::lock;
 use super::machine_log::Recording;
 use super::session::Shared;
 use super::timetable::Timetable;
+use super::view::View;
 use super::{Command, Hand, State};
-use crate::log::{Event, Record};
+use crate::log::Event;
 use crate::serial::PortError;
 use core::time::Duration;
 use plotter_motion::protocol::Wire;
-use plotter_motion::protocol::hosts::{HostState, MachineHost, MachineNotice, NotNow, Request};
+use plotter_motion::protocol::hosts::{HostState, HostStatus, MachineHost, MachineNotice, NotNow, Request};
 use plotter_motion::toolpath::{circle, rectangle};
 use plotter_motion::{Pen, PlotOp};
 use std::collections::VecDeque;
 use std::io::Write;
-use std::time::Instant;
 
 /// Longest time for which the line is listened to at once, in its time; so long ahead it takes bytes.
 const LISTEN: Duration = Duration::from_millis(2);
-/// How often the place is sampled, by the clock.
-const SAMPLE_EVERY: Duration = Duration::from_millis(20);
 /// How often the recording says how far the drawing is, in the line's time: with it another host goes on.
 const MARK_EVERY: Duration = Duration::from_millis(100);
 /// Operations by hand that wait: a circle of ten thousand points, and more.
@@ -28,10 +27,7 @@ const MOST_BY_HAND: usize = 20_000;
 pub(super) struct HostedEngine<'a, W: Write> {
     host: Box<dyn MachineHost + Send>,
     drawing: Option<Timetable>,
-    recorder: Option<Recording<W>>,
-    began: Instant,
-    sampled: Option<Instant>,
-    last: Duration,
+    journal: Journal<'a, W>,
     wire: Wire,
     free: Duration,
     by_hand: VecDeque<PlotOp>,
@@ -53,10 +49,7 @@ impl<'a, W: Write> HostedEngine<'a, W> {
         Self {
             host,
             drawing,
-            recorder,
-            began: Instant::now(),
-            sampled: None,
-            last: Duration::ZERO,
+            journal: Journal::new(recorder, shared),
             wire: Wire::new(baud),
             free: Duration::ZERO,
             by_hand: VecDeque::new(),
@@ -76,25 +69,13 @@ impl<'a, W: Write> HostedEngine<'a, W> {
                 Err(error) => break State::Failed(error.to_string()),
             }
         };
-        if let State::Failed(why) = &end {
-            self.take(Event::Note(format!("the session failed: {why}")));
-        }
         self.mark(true);
-        let now = self.now();
-        self.tell(now);
-        let kept = self.recorder.take().map(|recorder| recorder.finish());
-        let mut view = lock(&self.shared.view);
-        match kept {
-            Some(Err(error)) => view.recording = format!("stopped: {error}"),
-            Some(Ok(())) => view.recording = String::from("complete"),
-            None => {}
-        }
-        view.state = end;
-        self.shared.finished.notify_all();
+        let told = self.told();
+        self.journal.end(end, |view| told.show(view));
     }
 
     fn now(&self) -> Duration {
-        self.shared.line.now().unwrap_or_else(|| self.began.elapsed())
+        self.journal.now()
     }
 
     /// Once round: commands, host, line. The end, if that is it.
@@ -183,8 +164,16 @@ impl<'a, W: Write> HostedEngine<'a, W> {
         let speed = |mm_s: f64| (mm_s > 0.0).then_some(mm_s);
         let draws: Vec<PlotOp> = match hand {
             Hand::Next => return self.host.ask(now, Request::Next),
-            Hand::Jog(by, feed_mm_s) => return self.host.ask(now, Request::Jog { by, feed_mm_s }),
-            Hand::EndJog => return self.host.ask(now, Request::EndJog),
+            // While a key is held pieces come ten times a second: what the machine has no room for, it need not
+            // make, and where there is no word to end one, its pieces end by themselves.
+            Hand::Jog(by, feed_mm_s) => match self.host.ask(now, Request::Jog { by, feed_mm_s }) {
+                Err(NotNow::Busy) => return Ok(()),
+                done => return done,
+            },
+            Hand::EndJog => match self.host.ask(now, Request::EndJog) {
+                Err(NotNow::NoWord) => return Ok(()),
+                done => return done,
+            },
             Hand::GoTo(to) => vec![PlotOp::Travel { to }],
             Hand::Pen(Pen::Up) => vec![PlotOp::Travel { to: here }],
             Hand::Pen(Pen::Down) => vec![PlotOp::Draw { to: here, feed_mm_s: None }],
@@ -280,18 +269,7 @@ impl<'a, W: Write> HostedEngine<'a, W> {
 
     /// Something happened: on the screen, and into the recording.
     fn take(&mut self, event: Event) {
-        self.last = self.now().max(self.last);
-        let record = Record { time: self.last, event };
-        let mut view = lock(&self.shared.view);
-        view.push(&record);
-        if let Some(recorder) = &mut self.recorder
-            && let Err(error) = recorder.write(&record)
-        {
-            // The drawing goes on; what was written stays.
-            view.recording = format!("stopped: {error}");
-            view.message(record.time, format!("recording stopped, drawing goes on: {error}"));
-            self.recorder = None;
-        }
+        self.journal.take(event);
     }
 
     /// Says in the recording how far the drawing is, so that another host can go on with it.
@@ -307,40 +285,42 @@ impl<'a, W: Write> HostedEngine<'a, W> {
 
     /// Now and then: a sample of the place, and the recording written through.
     fn look(&mut self) {
-        let clock = Instant::now();
-        if self.sampled.is_some_and(|last| clock.saturating_duration_since(last) < SAMPLE_EVERY) {
+        if !self.journal.is_due() {
             return;
         }
-        self.sampled = Some(clock);
         self.mark(false);
-        let now = self.now();
-        self.tell(now);
-        if let Some(recorder) = &mut self.recorder
-            && let Err(error) = recorder.tick(now)
-        {
-            lock(&self.shared.view).recording = format!("stopped: {error}");
-            self.recorder = None;
-        }
+        let told = self.told();
+        self.journal.sample(|view| told.show(view));
     }
 
-    /// What the host knows, on the screen.
-    fn tell(&self, now: Duration) {
-        let status = self.host.status();
+    /// What the host knows.
+    fn told(&self) -> Told {
+        let (now, status) = (self.now(), self.host.status());
         let since = self.draws_since.map_or(Duration::ZERO, |since| now.saturating_sub(since));
         let drawn = self.drawn.saturating_add(since);
-        let mut view = lock(&self.shared.view);
-        view.done.targets = status.done;
-        view.reached = status.done;
         let rest = self.drawing.as_ref().filter(|_| !drawn.is_zero());
         let rest = rest.map(|table| table.rest(status.done, drawn));
+        Told { status, rest, way_mm: self.drawing.as_ref().map(|table| table.way_mm(status.done)) }
+    }
+}
+
+/// What a host knows of its machine at one time.
+struct Told {
+    status: HostStatus,
+    rest: Option<Duration>,
+    way_mm: Option<f64>,
+}
+
+impl Told {
+    fn show(self, view: &mut View) {
+        let Self { status, rest, way_mm } = self;
+        (view.done.targets, view.reached) = (status.done, status.done);
         if let Some(hosted) = &mut view.hosted {
             hosted.at = status.at;
             hosted.is_down = status.pen == Pen::Down;
             hosted.feed_percent = status.feed_percent;
-            hosted.rest = rest;
-            hosted.way_mm = self.drawing.as_ref().map(|table| table.way_mm(status.done));
+            (hosted.rest, hosted.way_mm) = (rest, way_mm);
         }
-        view.sample(now);
     }
 }
 

@@ -14,6 +14,7 @@
 mod commands;
 mod engine;
 mod hosted;
+mod journal;
 mod line;
 mod machine_line;
 mod machine_log;

@@ -256,3 +256,51 @@ fn one_operation_at_a_time_is_drawn_when_asked() {
     desk.ask(Request::GoOn);
     assert_eq!(desk.until(&[HostState::Done], LONG), HostState::Done);
 }
+
+/// By hand, as a session asks: again while the board has enough to do.
+fn by_hand(desk: &mut Desk, op: PlotOp) {
+    for _ in 0..5_000 {
+        let now = desk.now();
+        match desk.host.ask(now, Request::ByHand(op)) {
+            Err(NotNow::Busy) => desk.round(),
+            done => return done.unwrap(),
+        }
+    }
+    panic!("{op:?} is never done");
+}
+
+#[test]
+fn a_line_by_hand_is_drawn_and_the_pen_goes_where_it_is_led() {
+    let mut desk = desk(Vec::new());
+    let draw = |x: f64, y: f64| PlotOp::Draw { to: Point::new(x, y), feed_mm_s: None };
+    by_hand(&mut desk, PlotOp::Travel { to: Point::new(5.0, 5.0) });
+    by_hand(&mut desk, draw(8.0, 5.0));
+    by_hand(&mut desk, draw(8.0, 9.0));
+    by_hand(&mut desk, PlotOp::Travel { to: Point::new(1.0, 2.0) });
+    desk.wait(Duration::from_secs(3));
+    assert_eq!(made(&desk), axidraw().steps_at(Point::new(1.0, 2.0)));
+    assert_eq!(desk.host.status().pen, plotter_motion::Pen::Up);
+    let ink = desk.ink();
+    for at in [Point::new(5.0, 5.0), Point::new(8.0, 5.0), Point::new(8.0, 9.0)] {
+        let StepPoint { x, y } = axidraw().steps_at(at);
+        assert!(ink.contains(&(x, y)), "nothing is drawn at {at:?}");
+    }
+    let StepPoint { x, y } = axidraw().steps_at(Point::new(1.0, 2.0));
+    assert!(!ink.contains(&(x, y)));
+}
+
+#[test]
+fn a_host_that_goes_on_knows_which_pen_is_in_the_holder() {
+    let draw = |x: f64, y: f64| PlotOp::Draw { to: Point::new(x, y), feed_mm_s: None };
+    let mut ops = vec![PlotOp::SelectPen { pen: 1 }, draw(20.0, 0.0), draw(20.0, 20.0), draw(0.0, 20.0)];
+    ops.extend([PlotOp::SelectPen { pen: 2 }, draw(5.0, 25.0)]);
+    let mut desk = desk(ops.clone());
+    desk.ask(Request::GoOn);
+    desk.wait(Duration::from_millis(1_200));
+    let status = desk.host.status();
+    assert_eq!(status.state, HostState::Drawing);
+    let mut desk = desk.with(Box::new(host(ops).resuming(status.done, status.sent)));
+    desk.until(&[HostState::Ready], LONG);
+    desk.ask(Request::GoOn);
+    assert_eq!(desk.until(&[HostState::PenWanted(2), HostState::Done], LONG), HostState::PenWanted(2));
+}

@@ -61,18 +61,16 @@ fn a_drawing_is_whole_and_the_buffer_never_overflows() {
     }
 }
 
+/// A line there and back with this pen.
+fn there_and_back(pen: u8, at: f64) -> [PlotOp; 4] {
+    let draw = |x: f64, y: f64| PlotOp::Draw { to: Point::new(x, y), feed_mm_s: None };
+    let select = PlotOp::SelectPen { pen };
+    [select, PlotOp::Travel { to: Point::new(at, at) }, draw(at + 2.0, at), draw(at, at)]
+}
+
 #[test]
 fn the_plotter_changes_pens_by_itself() {
-    let square = |pen: u8, at: f64| {
-        let draw = |x: f64, y: f64| PlotOp::Draw { to: Point::new(x, y), feed_mm_s: None };
-        [
-            PlotOp::SelectPen { pen },
-            PlotOp::Travel { to: Point::new(at, at) },
-            draw(at + 2.0, at),
-            draw(at, at),
-        ]
-    };
-    let mut desk = desk([square(1, 2.0), square(4, 6.0)].concat());
+    let mut desk = desk([there_and_back(1, 2.0), there_and_back(4, 6.0)].concat());
     desk.ask(Request::GoOn);
     assert_eq!(desk.until(&[HostState::Done, HostState::PenWanted(4)], LONG), HostState::Done);
     let sent = String::from_utf8_lossy(&desk.sent).into_owned();
@@ -102,6 +100,32 @@ fn a_pause_draws_what_is_buffered_and_the_drawing_goes_on_with_its_pen() {
     assert_eq!(end(&desk), (80, 80));
     let sent = String::from_utf8_lossy(&desk.sent).into_owned();
     assert_eq!(sent.matches("IN;SP2;").count(), pauses, "{sent}");
+}
+
+#[test]
+fn a_pause_before_a_change_of_pens_does_not_change_it() {
+    let plain = {
+        let mut desk = desk([there_and_back(1, 2.0), there_and_back(4, 6.0)].concat());
+        desk.ask(Request::GoOn);
+        desk.until(&[HostState::Done], LONG);
+        desk.ink()
+    };
+    // The change waits in the queue when it is paused: nothing of it was sent, and the other pen is in the holder.
+    let mut desk = desk([there_and_back(1, 2.0), there_and_back(4, 6.0)].concat());
+    desk.ask(Request::GoOn);
+    while !desk.sent.windows(4).any(|words| words == b"SP1;") {
+        desk.round();
+    }
+    desk.ask(Request::Pause);
+    assert_eq!(desk.until(&[HostState::Paused], LONG), HostState::Paused);
+    assert!(!desk.sent.windows(4).any(|words| words == b"SP4;"));
+    desk.ask(Request::GoOn);
+    assert_eq!(desk.until(&[HostState::Done], LONG), HostState::Done);
+    let sent = String::from_utf8_lossy(&desk.sent).into_owned();
+    let pens: Vec<_> = sent.match_indices("SP").map(|(at, _)| &sent[at..at + 4]).collect();
+    assert_eq!(pens.iter().filter(|pen| **pen == "SP4;").count(), 1, "{sent}");
+    assert_eq!(pens.last(), Some(&"SP4;"), "{sent}");
+    assert!(desk.ink() == plain);
 }
 
 #[test]

@@ -1,25 +1,15 @@
 //! Hosts of machines that answer lines, each with a simulated machine at the other end.
 
-use crate::driven::{Desk, drawing, planned};
+use crate::driven::{Desk, drawing, machine, planned};
 use plotter_motion::gcode::WriteOptions;
 use plotter_motion::protocol::hosts::{
     Grbl, HostState, LineHost, LineHostSettings, MDraw, MachineHost, MachineNotice, NotNow, Request,
 };
-use plotter_motion::{Axis, Machine, MachineConfig, PlotOp, Point, Vec2};
+use plotter_motion::{Axis, PlotOp, Point, Vec2};
 use plotter_replay::live::Spoken;
 use std::time::Duration;
 
 const LONG: Duration = Duration::from_secs(600);
-
-/// With room for the drawing, switches where homing finds them soon, and a pen that waits for nothing.
-fn machine() -> Machine {
-    let mut config = MachineConfig::stepper_plotter();
-    (config.area.width_mm, config.area.height_mm) = (60.0, 40.0);
-    (config.homing.known_travel_mm, config.homing.max_travel_mm) = (0.0, 80.0);
-    (config.homing.fast_rate_hz, config.homing.pull_off_mm) = (4_000.0, 1.0);
-    config.pen.settle_ms = 20.0;
-    Machine::new(config).unwrap()
-}
 
 type Ops = std::vec::IntoIter<PlotOp>;
 
@@ -308,4 +298,145 @@ fn the_time_that_is_left_is_right_within_two_hundredths_behind_a_twentieth() {
     let worst = off.fold(0.0, f64::max);
     println!("{total:?} planned, {whole:?} drawn, the time left off by {worst:.3} s at most");
     assert!(worst < 0.02 * whole.as_secs_f64(), "{worst} of {whole:?}, planned {total:?}");
+}
+
+#[test]
+fn a_movement_by_hand_that_is_ended_at_once_goes_nowhere_and_one_under_way_stops() {
+    let mut desk = Desk::new(grbl(Vec::new()), &machine(), Spoken::Grbl, "");
+    desk.until(&[HostState::Ready], LONG);
+    let jog = Request::Jog { by: Vec2::new(50.0, 0.0), feed_mm_s: 20.0 };
+    desk.ask(jog);
+    desk.ask(Request::EndJog); // before a byte of it is out
+    desk.wait(Duration::from_secs(1));
+    assert_eq!(desk.host.status().at, Some(Point::ORIGIN));
+    desk.ask(jog);
+    desk.round(); // on the line, and not read yet: GRBL takes no notice of the word that would end it
+    desk.ask(Request::EndJog);
+    desk.wait(Duration::from_secs(2));
+    let at = desk.host.status().at.unwrap();
+    assert!(at.x < 10.0, "{at:?}");
+    desk.ask(Request::ByHand(PlotOp::Travel { to: Point::new(1.0, 1.0) }));
+    desk.wait(Duration::from_secs(1));
+    assert_eq!(desk.host.status().at.map(|at| at.distance(Point::new(1.0, 1.0)) < 0.02), Some(true));
+}
+
+#[test]
+fn a_slow_pen_is_no_lost_answer() {
+    let machine = machine();
+    let options = WriteOptions { settle: Duration::from_millis(2_500), ..WriteOptions::default() };
+    let mut ops = drawing();
+    ops.insert(40, PlotOp::Dwell { duration: Duration::from_secs(4) });
+    let host = LineHost::new(Grbl::new(options), LineHostSettings::default(), ops.clone().into_iter());
+    let mut desk = Desk::new(Box::new(host), &machine, Spoken::Grbl, "");
+    desk.until(&[HostState::Ready], LONG);
+    desk.ask(Request::GoOn);
+    assert_eq!(desk.until(&[HostState::Done], LONG), HostState::Done);
+    assert!(is_whole(&desk.notices), "{:?}", desk.notices);
+}
+
+/// A line to and fro over the table, slowly.
+fn slow_lines() -> Vec<PlotOp> {
+    let to = |n: u32| Point::new(if n.is_multiple_of(2) { 1.0 } else { 31.0 }, f64::from(n));
+    (0..12).map(|n| PlotOp::Draw { to: to(n), feed_mm_s: Some(20.0) }).collect()
+}
+
+#[test]
+fn without_a_word_for_a_hold_a_pause_comes_behind_the_line_under_way_and_so_does_a_stop() {
+    let machine = machine();
+    let plain = {
+        let mut desk = Desk::new(mdraw(slow_lines()), &machine, Spoken::MDraw, "");
+        desk.until(&[HostState::Ready], LONG);
+        desk.ask(Request::GoOn);
+        desk.until(&[HostState::Done], LONG);
+        (desk.steps(), desk.ink())
+    };
+    let mut desk = Desk::new(mdraw(slow_lines()), &machine, Spoken::MDraw, "");
+    desk.until(&[HostState::Ready], LONG);
+    desk.ask(Request::GoOn);
+    for ask in [Request::Pause, Request::Stop, Request::Pause] {
+        desk.wait(Duration::from_millis(2_300));
+        let asked = desk.now();
+        desk.ask(ask);
+        if ask == Request::Stop {
+            // What it draws is drawn to its end: a line in the middle of it would end it (the firmware's trap).
+            assert_eq!(desk.host.status().state, HostState::Stopped);
+            desk.ask(Request::Unlock);
+        }
+        assert_eq!(desk.until(&[HostState::Paused], LONG), HostState::Paused);
+        assert!(desk.now() - asked < Duration::from_secs(3), "{:?} after {ask:?}", desk.now() - asked);
+        desk.ask(Request::GoOn);
+    }
+    assert_eq!(desk.until(&[HostState::Done], LONG), HostState::Done);
+    let odd = desk.notices.iter().filter(|n| !matches!(n, MachineNotice::State(_)));
+    assert_eq!(odd.count(), 0, "{:?}", desk.notices);
+    assert!((desk.steps(), desk.ink()) == plain);
+}
+
+#[test]
+fn a_pause_whose_greeting_comes_wrong_is_a_pause() {
+    let mut desk = Desk::new(grbl(drawing()), &machine(), Spoken::Grbl, "");
+    desk.until(&[HostState::Ready], LONG);
+    desk.ask(Request::GoOn);
+    desk.wait(Duration::from_millis(900));
+    desk.damage = Some(Box::new(|is_host, byte| if !is_host && byte == b'G' { b'g' } else { byte }));
+    desk.ask(Request::Pause);
+    assert_eq!(desk.until(&[HostState::Paused], Duration::from_secs(5)), HostState::Paused);
+    desk.damage = None;
+    desk.ask(Request::GoOn);
+    assert_eq!(desk.until(&[HostState::Done], LONG), HostState::Done);
+    assert!(!desk.notices.iter().any(|n| matches!(n, MachineNotice::Elsewhere { .. })), "{:?}", desk.notices);
+}
+
+#[test]
+fn a_killed_host_s_change_of_pens_is_asked_for_again_and_no_other() {
+    let stroke = |at: f64| {
+        let draw = |x: f64, y: f64| PlotOp::Draw { to: Point::new(x, y), feed_mm_s: Some(20.0) };
+        [PlotOp::Travel { to: Point::new(at, at) }, draw(at + 9.0, at), draw(at + 9.0, at + 5.0)]
+    };
+    let mut ops = vec![PlotOp::SelectPen { pen: 1 }];
+    ops.extend(stroke(2.0));
+    ops.push(PlotOp::SelectPen { pen: 3 });
+    ops.extend(stroke(12.0));
+    ops.push(PlotOp::SelectPen { pen: 4 });
+    ops.extend(stroke(22.0));
+    let begin = || {
+        let mut desk = Desk::new(grbl(ops.clone()), &machine(), Spoken::Grbl, "");
+        desk.until(&[HostState::Ready], LONG);
+        desk.ask(Request::GoOn);
+        desk
+    };
+    let wants = [HostState::PenWanted(3), HostState::PenWanted(4), HostState::Done];
+    let again = |desk: Desk| {
+        let status = desk.host.status();
+        let host = grbl(ops.clone()).resuming(status.done, status.sent + 64);
+        let mut desk = desk.with(Box::new(host));
+        assert_eq!(desk.until(&[HostState::Paused], LONG), HostState::Paused);
+        desk.ask(Request::GoOn);
+        desk
+    };
+    // Before the change, at it, and behind it.
+    let mut desk = begin();
+    desk.wait(Duration::from_millis(600));
+    let mut desk = again(desk);
+    assert_eq!(desk.until(&wants, LONG), wants[0], "{:?}", desk.notices);
+    let mut desk = again(desk);
+    assert_eq!(desk.until(&wants, LONG), wants[0], "{:?}", desk.notices);
+    desk.ask(Request::GoOn);
+    desk.wait(Duration::from_millis(800));
+    let mut desk = again(desk);
+    assert_eq!(desk.until(&wants, LONG), wants[1], "{:?}", desk.notices);
+    desk.ask(Request::GoOn);
+    assert_eq!(desk.until(&wants, LONG), wants[2], "{:?}", desk.notices);
+    let plain = {
+        let mut desk = begin();
+        for _ in 0..3 {
+            desk.until(&wants, LONG);
+            if desk.host.status().state != HostState::Done {
+                desk.ask(Request::GoOn);
+            }
+        }
+        assert_eq!(desk.until(&[HostState::Done], LONG), HostState::Done);
+        desk.ink()
+    };
+    assert!(desk.ink() == plain, "{} places, {} as planned", desk.ink().len(), plain.len());
 }

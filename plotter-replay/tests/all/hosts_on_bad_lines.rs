@@ -4,24 +4,16 @@
 //! cargo test --release -p plotter-replay --features cli,live --test all hosts_on_bad_lines:: -- --include-ignored --nocapture
 //! ```
 
-use crate::driven::Desk;
+use crate::driven::{Desk, machine};
 use plotter_motion::gcode::WriteOptions;
 use plotter_motion::protocol::hosts::{
     Grbl, HostState, LineHost, LineHostSettings, MDraw, MachineHost, MachineNotice, Request,
 };
 
-use plotter_motion::{Machine, MachineConfig, PlotOp, Point, SplitMix64};
+use plotter_motion::{PlotOp, Point, SplitMix64};
 use plotter_replay::live::Spoken;
 use std::collections::BTreeSet;
 use std::time::Duration;
-
-fn machine() -> Machine {
-    let mut config = MachineConfig::stepper_plotter();
-    (config.area.width_mm, config.area.height_mm) = (60.0, 40.0);
-    (config.homing.known_travel_mm, config.homing.max_travel_mm) = (0.0, 80.0);
-    config.pen.settle_ms = 20.0;
-    Machine::new(config).unwrap()
-}
 
 /// Strokes of some lines each, at places of this seed.
 fn drawing(seed: u64) -> Vec<PlotOp> {

@@ -3,6 +3,7 @@
 use super::language::OpText;
 use crate::PlotOp;
 use crate::gcode::{PenControl, WriteError, WriteOptions, Writer};
+use core::time::Duration;
 
 /// A writer whose text is taken out operation by operation, and which can begin anew.
 #[derive(Clone, Debug)]
@@ -36,6 +37,11 @@ impl<'a> GcodeWords<'a> {
 
     fn take(&mut self, out: &mut OpText) {
         *out = core::mem::take(self.writer.out_mut());
+    }
+
+    /// How long the machine stands for its pen.
+    pub(super) const fn settle(&self) -> Duration {
+        self.options.settle
     }
 
     /// The number that lowers the pen from the next beginning on; whether it is one.

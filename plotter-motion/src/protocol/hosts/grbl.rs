@@ -6,6 +6,7 @@ use super::{InFlight, MachineLimits};
 use crate::gcode::{WriteError, WriteOptions};
 use crate::{PlotOp, Point, Vec2};
 use core::fmt::Write as _;
+use core::time::Duration;
 
 /// Bytes of lines that GRBL keeps before it takes them: 128, of which a ring keeps one free in some versions.
 const RX_BYTES: usize = 127;
@@ -171,6 +172,10 @@ impl Language for Grbl<'_> {
 
     fn pen_down_at(&mut self, number: u16) -> bool {
         self.words.pen_down_at(number)
+    }
+
+    fn stands_for(&self) -> Duration {
+        self.words.settle()
     }
 
     fn fits(&self, flight: InFlight, bytes: usize) -> bool {

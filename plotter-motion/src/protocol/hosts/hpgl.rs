@@ -141,6 +141,14 @@ impl Language for Hpgl {
         (self.begins, self.rests, self.speed_cm_s) = (true, false, None);
     }
 
+    fn unsaid(&mut self) {
+        self.speed_cm_s = None;
+    }
+
+    fn holds(&mut self, pen: u8) {
+        self.pen = pen.max(1);
+    }
+
     fn write(&mut self, op: PlotOp, out: &mut OpText) -> Result<(), WriteError> {
         let before = self.clone();
         out.clear();

@@ -103,6 +103,15 @@ pub trait Language {
     /// What was sent is forgotten, also by the machine, which may count lines from anywhere.
     fn count_anew(&mut self) {}
 
+    /// Lines that were written last were not sent: what they would have changed is said anew.
+    fn unsaid(&mut self) {
+        self.begin();
+    }
+
+    /// Which pen of its carousel the machine draws with, as far as it was sent; 0 if the drawing has selected
+    /// none.
+    fn holds(&mut self, _pen: u8) {}
+
     /// An operation in lines, each with its end.
     ///
     /// # Errors
@@ -158,6 +167,11 @@ pub trait Language {
     /// A line with its end as it goes out: with its number, counted from 0. Says whether it found room.
     fn frame(&self, _number: u64, line: &[u8], out: &mut Words<MOST_LINE>) -> bool {
         line.iter().all(|&byte| out.push(byte))
+    }
+
+    /// How long a machine may stand still for a line of its own, such as while its pen moves, and not answer it.
+    fn stands_for(&self) -> Duration {
+        Duration::ZERO
     }
 
     /// Whether a line of so many bytes may go out while others are.

@@ -165,6 +165,37 @@ impl LineQueue {
         true
     }
 
+    /// Forgets what the machine cannot have seen, but for the rest of an operation of which it has seen a part.
+    /// The first operation of the drawing that is forgotten, if one is.
+    pub(super) fn drop_unsent(&mut self) -> Option<u64> {
+        let ever_sent = usize::try_from(self.ever_sent.saturating_sub(self.answered)).unwrap_or(usize::MAX);
+        let mut keep = self.kept + (self.sent + usize::from(self.bytes_sent > 0)).max(ever_sent);
+        while keep > 0
+            && let Some(Line { purpose: Purpose::Drawing { ends: false, .. }, .. }) = self.lines.get(keep - 1)
+        {
+            keep += 1;
+        }
+        let mut first = None;
+        while self.lines.len() > keep
+            && let Some(line) = self.lines.pop_back()
+        {
+            if let Purpose::Drawing { op, .. } = line.purpose {
+                first = Some(op);
+            }
+        }
+        first
+    }
+
+    /// Forgets movements by hand that are not begun.
+    pub(super) fn drop_jogs(&mut self) {
+        let keep = self.kept + self.sent + usize::from(self.bytes_sent > 0);
+        while self.lines.len() > keep
+            && self.lines.get(self.lines.len() - 1).is_some_and(|line| line.purpose == Purpose::Jog)
+        {
+            self.lines.pop_back();
+        }
+    }
+
     /// Forgets all of them: the machine has, too.
     pub(super) fn clear(&mut self) {
         let answered = self.answered;

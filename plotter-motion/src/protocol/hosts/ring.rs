@@ -47,6 +47,14 @@ impl<T: Copy, const N: usize> Ring<T, N> {
         item
     }
 
+    /// The last that came in.
+    pub(super) fn pop_back(&mut self) -> Option<T> {
+        let place = self.count.checked_sub(1)?;
+        let item = self.slots.get_mut((self.first + place) % N.max(1)).and_then(Option::take);
+        self.count = place;
+        item
+    }
+
     pub(super) fn get(&self, place: usize) -> Option<&T> {
         (place < self.count).then(|| self.slots.get((self.first + place) % N.max(1))).flatten()?.as_ref()
     }
@@ -77,5 +85,6 @@ mod tests {
         }
         (0..3).for_each(|item| assert_eq!(ring.push(item), Ok(())));
         assert_eq!((ring.push(9), ring.len(), ring.get(3)), (Err(9), 3, None));
+        assert_eq!((ring.pop_back(), ring.pop(), ring.len()), (Some(2), Some(0), 1));
     }
 }

@@ -18,6 +18,8 @@ pub(super) struct Given {
     pub(super) op: PlotOp,
     /// Where the pen stands before it.
     pub(super) from: Point,
+    /// Which pen is in the holder before it, 0 if the drawing has selected none.
+    pub(super) holds: u8,
 }
 
 /// Operations in their order, from the first that is not known to be done.
@@ -28,13 +30,14 @@ pub(super) struct Trail {
     sent: usize,
     /// Operations that are done.
     done: u64,
-    /// Where the pen stands behind the last of them.
+    /// Where the pen stands behind the last of them, and which it is.
     end: Point,
+    end_holds: u8,
 }
 
 impl Trail {
     pub(super) const fn new() -> Self {
-        Self { ops: Ring::new(), sent: 0, done: 0, end: Point::ORIGIN }
+        Self { ops: Ring::new(), sent: 0, done: 0, end: Point::ORIGIN, end_holds: 0 }
     }
 
     /// Operations that are done.
@@ -45,6 +48,11 @@ impl Trail {
     /// Where the pen stands behind what was sent.
     pub(super) fn sent_end(&self) -> Point {
         self.ops.get(self.sent).map_or(self.end, |given| given.from)
+    }
+
+    /// Which pen is in the holder behind what was sent, 0 if the drawing has selected none.
+    pub(super) fn sent_holds(&self) -> u8 {
+        self.ops.get(self.sent).map_or(self.end_holds, |given| given.holds)
     }
 
     /// The next that the machine was not sent.
@@ -72,11 +80,14 @@ impl Trail {
         if self.ops.is_full() && !self.finish_first() {
             return false;
         }
-        let given = Given { index, op, from: self.end };
+        let given = Given { index, op, from: self.end, holds: self.end_holds };
         if self.ops.push(given).is_err() {
             return false;
         }
         self.end = op.target().unwrap_or(self.end);
+        if let PlotOp::SelectPen { pen } = op {
+            self.end_holds = pen;
+        }
         true
     }
 
@@ -134,6 +145,19 @@ impl Trail {
         true
     }
 
+    /// Operations from this one on were not sent after all.
+    pub(super) fn unsend_from(&mut self, index: u64) {
+        let place =
+            (0..self.sent).find(|&place| self.ops.get(place).is_some_and(|given| given.index >= index));
+        self.sent = place.unwrap_or(self.sent);
+    }
+
+    /// All of them are done, sent or not.
+    pub(super) fn finish_all(&mut self) {
+        self.sent = self.ops.len();
+        self.finish_sent();
+    }
+
     /// The machine has come to rest here in the middle of the first operation, or before it, and has
     /// forgotten all that it was sent: the rest of it comes first, then what comes behind. At a place that is
     /// not on its way all of it comes again.
@@ -147,8 +171,8 @@ impl Trail {
     /// Of operations that were sent, perhaps, by an earlier host: those up to the one that ends here are done.
     /// Says whether there is one, the last of them before which nothing ends elsewhere.
     pub(super) fn rests_at(&mut self, at: Point, within_mm: f64) -> bool {
-        let first = self.ops.get(0);
-        if first.is_some_and(|first| first.from.distance(at) <= within_mm) {
+        let start = self.ops.get(0).map_or(self.end, |first| first.from);
+        if start.distance(at) <= within_mm {
             return true;
         }
         let ends = |given: &Given| given.op.target().is_some_and(|to| to.distance(at) <= within_mm);

@@ -3,7 +3,7 @@
 use plotter_motion::protocol::Wire;
 use plotter_motion::protocol::hosts::{HostState, MachineHost, MachineNotice, Request};
 use plotter_motion::stepgen::{MotorEvent, timed_events};
-use plotter_motion::{Axis, Machine, PlotOp, Point};
+use plotter_motion::{Axis, Machine, MachineConfig, PlotOp, Point};
 use plotter_replay::live::{Line, MachineLine, MachineLog, SimulatedMachine, Spoken};
 use plotter_replay::log::{Event, Header, Reader, Writer};
 use plotter_replay::simulation::Script;
@@ -147,6 +147,16 @@ impl Desk {
         }
         ink
     }
+}
+
+/// With room for the drawing, switches where homing finds them soon, and a pen that waits for next to nothing.
+pub(crate) fn machine() -> Machine {
+    let mut config = MachineConfig::stepper_plotter();
+    (config.area.width_mm, config.area.height_mm) = (60.0, 40.0);
+    (config.homing.known_travel_mm, config.homing.max_travel_mm) = (0.0, 80.0);
+    (config.homing.fast_rate_hz, config.homing.pull_off_mm) = (4_000.0, 1.0);
+    config.pen.settle_ms = 20.0;
+    Machine::new(config).unwrap()
 }
 
 /// The steps of the desktop's own plan.

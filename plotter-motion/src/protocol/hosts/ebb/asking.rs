@@ -17,7 +17,7 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
         if !(to.x.abs() <= 1e4 && to.y.abs() <= 1e4) {
             return Err(NotNow::OutOfRange);
         }
-        if self.line.is_some() {
+        if self.line.is_some() || self.goes_to.is_some() {
             return Err(NotNow::Busy);
         }
         let from = self.by_hand;
@@ -85,8 +85,7 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
                 _ => Err(NotNow::Nothing),
             },
             Request::Stop => {
-                self.line = None;
-                self.next = None;
+                (self.line, self.next, self.goes_to) = (None, None, None);
                 if !matches!(self.phase, Phase::Unheard(_)) {
                     self.phase = Phase::Stopped;
                 }
@@ -105,10 +104,14 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
                 match op {
                     PlotOp::Travel { to } if self.pen == Pen::Up => self.move_by_hand(to, speed),
                     PlotOp::Draw { to, .. } if self.pen == Pen::Down => self.move_by_hand(to, speed),
-                    PlotOp::Travel { .. } | PlotOp::Draw { .. } => {
-                        if self.line.is_some() {
+                    PlotOp::Travel { to } | PlotOp::Draw { to, .. } => {
+                        if !(to.x.abs() <= 1e4 && to.y.abs() <= 1e4) {
+                            return Err(NotNow::OutOfRange);
+                        }
+                        if self.line.is_some() || self.goes_to.is_some() {
                             return Err(NotNow::Busy);
                         }
+                        self.goes_to = (self.motion.kinematics().steps_at(to) != self.by_hand).then_some(to);
                         let pen = if self.pen == Pen::Up { Pen::Down } else { Pen::Up };
                         let command = EbbCommand::Pen { pen, duration_ms: self.settle_ms() };
                         self.send_command(Purpose::ByHand, command);
@@ -150,7 +153,7 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
             }
             Request::PenDownAt(position) => {
                 self.is_free()?;
-                if self.line.is_some() {
+                if self.line.is_some() || self.goes_to.is_some() {
                     return Err(NotNow::Busy);
                 }
                 let [_, down] = &mut self.settings.servo;

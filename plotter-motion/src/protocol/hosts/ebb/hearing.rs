@@ -1,11 +1,15 @@
 //! What the host of an EBB hears: answers to lines, and where the board counts itself to be.
 
 use super::super::MachineNotice;
+use super::super::ring::Ring;
 use super::answer::Said;
 use super::{BEHIND_WHERE, ENABLING, EbbHost, MOST_TRIES, Phase, Purpose, SETTINGS, Then};
 use crate::kinematics::Kinematics;
 use crate::protocol::ebb::{EbbCommand, EbbDialect};
 use crate::{Pen, PlotOp, StepPoint};
+
+/// Changes of pens that are kept of what an earlier host may have sent: each has strokes behind it.
+const MOST_PENS: usize = 16;
 
 impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
     pub(super) fn hear(&mut self, said: Said) {
@@ -89,9 +93,17 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
         let Some(told) = self.place.take() else { return };
         let at = StepPoint::new(told.x.wrapping_sub(self.zero.x), told.y.wrapping_sub(self.zero.y));
         if let (Phase::Unheard(_), Some((done, sent))) = (self.phase, self.earlier.take()) {
+            // Pens that were selected behind what was done for certain: in the holder, if what follows was drawn.
+            let mut pens = Ring::<(u64, u8), MOST_PENS>::new();
             while self.index < sent
                 && let Some(op) = self.ops.next()
             {
+                if let PlotOp::SelectPen { pen } = op {
+                    if pens.is_full() {
+                        self.holder = pens.pop().map(|(_, pen)| pen);
+                    }
+                    let _ = pens.push((self.index, pen)); // there is room
+                }
                 if !self.trail.push(self.index, op) {
                     break;
                 }
@@ -107,6 +119,9 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
                 self.trail.interrupted_at(place);
             } else if self.trail.under_way() > 0 {
                 self.notice(MachineNotice::NotResumed { told: place });
+            }
+            while pens.get(0).is_some_and(|(index, _)| *index < self.trail.done()) {
+                self.holder = pens.pop().map(|(_, pen)| pen);
             }
             self.restart_at(at);
             self.next_setting();

@@ -191,6 +191,8 @@ pub struct EbbHost<K, I> {
     held: Option<(Pen, StepPoint)>,
     /// Where the motors are, moved by hand.
     by_hand: StepPoint,
+    /// Where they go by hand once the pen is as it is to be.
+    goes_to: Option<Point>,
     /// What the board answered to the last QS.
     place: Option<StepPoint>,
     holder: Option<u8>,
@@ -232,6 +234,7 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
             pen: Pen::Up,
             held: None,
             by_hand: StepPoint::default(),
+            goes_to: None,
             place: None,
             holder: None,
             sent_ops: 0,

@@ -16,12 +16,12 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
             Phase::Unheard(sent) => self.write_setting(sent),
             Phase::Drawing(_) | Phase::Ending(_) | Phase::Lifted(_) => self.write_motion(),
             Phase::Asking => self.send(Purpose::Where, format_args!("QS")),
-            Phase::Ready
-            | Phase::Paused
-            | Phase::PenWanted(_)
-            | Phase::SheetWanted
-            | Phase::Stopped
-            | Phase::Done => {}
+            Phase::Ready | Phase::Paused | Phase::PenWanted(_) | Phase::SheetWanted | Phase::Done => {
+                if let Some(to) = self.goes_to.take() {
+                    let _ = self.move_by_hand(to, self.hand_mm_s()); // (it was looked at when it was asked for)
+                }
+            }
+            Phase::Stopped => {}
         }
     }
 

@@ -22,6 +22,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                     return Err(NotNow::Busy);
                 }
                 self.language.begin();
+                self.language.holds(self.trail.sent_holds());
                 if self.index > 0 {
                     // The pen goes back to where it was lifted.
                     let mut text = OpText::default();
@@ -87,6 +88,12 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                     self.phase = Phase::Braking;
                     Ok(())
                 }
+                (Phase::Drawing(_) | Phase::Ending(_, false), None) => {
+                    self.interrupt_ending();
+                    self.hold_back();
+                    self.end(Then::Pause);
+                    Ok(())
+                }
                 (Phase::Drawing(_), _) => {
                     self.phase = Phase::Drawing(Some(0));
                     Ok(())
@@ -95,8 +102,14 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                 _ => Err(NotNow::Nothing),
             },
             Request::Stop => {
-                self.forget();
                 self.urgent.clear();
+                if L::STOP.is_empty() {
+                    // What is on its way is drawn to its end, and answered then.
+                    self.interrupt_ending();
+                    self.hold_back();
+                } else {
+                    self.forget();
+                }
                 self.phase = if self.phase == Phase::Unheard { Phase::Unheard } else { Phase::Stopped };
                 Ok(())
             }
@@ -142,12 +155,15 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                 if !(by.length() <= 1e6 && feed_mm_s > 0.0 && feed_mm_s <= 1e6) {
                     return Err(NotNow::OutOfRange);
                 }
+                self.ends_jog = false;
                 let has_word = self.language.jog(self.at.unwrap_or_default(), by, feed_mm_s, &mut text);
                 self.by_hand(&text, has_word, Purpose::Jog)
             }
             Request::EndJog => {
                 self.is_free()?;
+                self.queue.drop_jogs();
                 self.urgent(L::END_JOG.ok_or(NotNow::NoWord)?);
+                self.ends_jog = self.jogs;
                 Ok(())
             }
             Request::StandsAt(place) => {

@@ -3,7 +3,7 @@
 use super::super::MachineNotice;
 use super::super::language::{Answer, Doing, Language, OpText};
 use super::super::line_queue::Purpose;
-use super::{LineHost, MOST_ASKS, Phase, RESTS_FOR_LOST, Then};
+use super::{Earlier, LineHost, MOST_ASKS, Phase, RESTS_FOR_LOST, Then};
 use crate::{Pen, PlotOp, Point};
 use core::time::Duration;
 
@@ -63,7 +63,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                 self.phase = Phase::Locked(code);
             }
             Answer::Greeting => self.greeted(),
-            Answer::Report(report) => self.report(report.doing, report.at),
+            Answer::Report(report) => self.report(now, report.doing, report.at),
             Answer::Busy | Answer::Known => {
                 if self.phase == Phase::Unheard {
                     self.first_heard();
@@ -75,6 +75,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
 
     pub(super) fn taken(&mut self, purpose: Purpose, is_refused: Option<u16>) {
         self.rests = 0;
+        self.stirred = self.stirred.max(self.heard.unwrap_or_default());
         if let Some(code) = is_refused {
             let op = if let Purpose::Drawing { op, .. } = purpose { Some(op) } else { None };
             self.notice(MachineNotice::Refused { op, code });
@@ -124,7 +125,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
         }
     }
 
-    pub(super) fn report(&mut self, doing: Option<Doing>, at: Option<Point>) {
+    pub(super) fn report(&mut self, now: Duration, doing: Option<Doing>, at: Option<Point>) {
         self.at = at.or(self.at);
         self.is_told |= at.is_some();
         if self.phase == Phase::Unheard {
@@ -136,6 +137,8 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                 self.forget();
                 self.phase = Phase::Locked(0);
             }
+            // Its greeting came wrong.
+            (Some(Doing::Idle), Phase::Forgetting) => self.greeted(),
             (Some(Doing::Held), Phase::Braking) => {
                 if let Some((_, forget)) = L::HOLD {
                     if let Some(at) = at {
@@ -164,9 +167,17 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
         }
         self.rests = if doing == Some(Doing::Idle) { self.rests.saturating_add(1) } else { 0 };
         if self.rests > 0 && self.queue.in_flight().lines == 0 {
-            self.jogs = false;
+            (self.jogs, self.ends_jog) = (false, false);
         }
-        if self.rests >= RESTS_FOR_LOST && L::QUERY.is_some() && self.queue.in_flight().lines > 0 {
+        if self.ends_jog
+            && doing == Some(Doing::Moves)
+            && let Some(byte) = L::END_JOG
+        {
+            self.urgent(byte);
+        }
+        let stands_for = self.language.stands_for().max(self.longest_dwell);
+        let stands = now.saturating_sub(self.stirred) > stands_for && self.rests >= RESTS_FOR_LOST;
+        if stands && L::QUERY.is_some() && self.queue.in_flight().lines > 0 {
             // It waits, and so has taken all that it will take.
             self.notice(MachineNotice::AnswerLost);
             while let Some(purpose) = self.queue.answer() {
@@ -217,6 +228,35 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
         self.push(&text, Purpose::Question);
     }
 
+    /// Operations that an earlier host may have sent, up to the next change of what is in the machine: it rested
+    /// there. That change, if it was not made for certain.
+    fn take_earlier(&mut self, earlier: Earlier) -> Option<Then> {
+        while self.index < earlier.sent {
+            let op = self.ops.next()?;
+            let index = self.index;
+            self.index = self.index.saturating_add(1);
+            let change = match op {
+                PlotOp::SelectPen { pen } if !L::CHANGES_PENS => {
+                    self.holder.replace(pen).filter(|before| *before != pen).map(|_| Then::Pen(pen))
+                }
+                PlotOp::NewPage => Some(Then::Sheet),
+                _ => {
+                    if !self.trail.push(index, op) {
+                        return None;
+                    }
+                    if self.index <= earlier.done {
+                        self.trail.finish_all();
+                    }
+                    continue;
+                }
+            };
+            if change.is_some() && index >= earlier.done {
+                return change;
+            }
+        }
+        None
+    }
+
     /// Finds where an earlier host has left the drawing.
     pub(super) fn resume(&mut self) {
         let (Some(earlier), Some(at)) = (self.earlier, self.at) else { return };
@@ -224,21 +264,20 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             return; // it draws what it has
         }
         self.earlier = None;
-        let mut is_room = true;
-        while self.index < earlier.sent && is_room {
-            let Some(op) = self.ops.next() else { break };
-            if let PlotOp::SelectPen { pen } = op {
-                self.holder = Some(pen);
+        let is_found = loop {
+            let change = self.take_earlier(earlier);
+            if self.trail.rests_at(at, self.rest_within_mm()) {
+                self.after = change;
+                break true;
             }
-            is_room = self.trail.push(self.index, op);
-            self.index = self.index.saturating_add(1);
-            if self.index <= earlier.done {
-                self.trail.send();
-                self.trail.finish_sent();
+            // It is not before the change of pens, and so behind it: all before is drawn.
+            if change.is_none() {
+                break false;
             }
-        }
+            self.trail.finish_all();
+        };
         self.sent_ops = self.index;
-        if !is_room || !self.trail.rests_at(at, self.rest_within_mm()) {
+        if !is_found {
             self.notice(MachineNotice::NotResumed { told: at });
             self.knows_place = false;
         }
@@ -275,7 +314,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
     /// The machine has forgotten all that it was sent.
     pub(super) fn forget(&mut self) {
         self.interrupt_ending();
-        self.jogs = false;
+        (self.jogs, self.ends_jog) = (false, false);
         self.queue.clear();
         self.language.begin();
         self.language.count_anew();
@@ -284,6 +323,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
         if L::QUERY.is_none() {
             self.settle(self.at);
         }
+        self.language.holds(self.trail.sent_holds());
     }
 
     /// What was to come at the end comes when the drawing has gone on.

@@ -152,8 +152,15 @@ pub struct LineHost<L, I> {
     /// How often the machine was asked at this rest where it stands, and whether it has said so.
     asks: u8,
     is_told: bool,
+    /// The longest that the drawing has stood still so far.
+    longest_dwell: Duration,
+    /// When a line began to go out last, or was answered.
+    stirred: Duration,
     /// Whether it moves by hand: GRBL refuses all but further such movements until it stands.
     jogs: bool,
+    /// Whether that is to end: said again until the machine stands, as a jog that it has not read yet is none
+    /// to end.
+    ends_jog: bool,
     /// Whether what was sent is forgotten, and the place where it ended not told yet.
     is_interrupted: bool,
     pen: Pen,
@@ -204,7 +211,10 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             knows_place: true,
             asks: 0,
             is_told: false,
+            longest_dwell: Duration::ZERO,
+            stirred: Duration::ZERO,
             jogs: false,
+            ends_jog: false,
             is_interrupted: false,
             pen: Pen::Up,
             holder: None,
@@ -274,7 +284,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
         if L::QUERY.is_some() { self.settings.silence } else { L::PATIENCE.max(self.settings.silence) }
     }
 
-    /// How often it is asked where the machine is: twice as often while something depends on it.
+    /// How often it is asked where the machine is: four times as often while something depends on it.
     fn ask_every(&self) -> Duration {
         match self.phase {
             Phase::Braking | Phase::Ending(_, true) => self.settings.ask_every / 4,
@@ -291,7 +301,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
                 Some(asked) => now.saturating_sub(asked) >= self.ask_every(),
                 None => self.heard.is_some() || now.saturating_sub(began) >= self.settings.greeting,
             };
-            if due && self.phase != Phase::Forgetting {
+            if due {
                 self.asked = Some(now);
                 self.urgent(query);
             }
@@ -337,6 +347,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
         if !is_begun && !self.language.fits(self.queue.in_flight(), bytes) {
             return None;
         }
+        self.stirred = self.stirred.max(now);
         if L::QUERY.is_none() && self.queue.in_flight().lines == 0 && !is_begun {
             self.spoke = Some(now);
         }

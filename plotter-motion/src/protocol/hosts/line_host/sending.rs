@@ -60,6 +60,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                         self.notice(MachineNotice::LeftOut { op: given.index });
                     }
                     match given.op {
+                        PlotOp::Dwell { duration } => self.longest_dwell = self.longest_dwell.max(duration),
                         PlotOp::Travel { .. } => self.pen = Pen::Up,
                         PlotOp::Draw { .. } | PlotOp::DrawArc { .. } => self.pen = Pen::Down,
                         _ => {}
@@ -127,6 +128,16 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             *left = left.saturating_sub(1);
         }
         Some(())
+    }
+
+    /// What the machine cannot have seen yet comes when the drawing goes on.
+    pub(super) fn hold_back(&mut self) {
+        if let Some(op) = self.queue.drop_unsent() {
+            self.trail.unsend_from(op);
+            self.sent_ops = op;
+        }
+        self.language.unsaid();
+        self.language.holds(self.trail.sent_holds());
     }
 
     /// Lifts the pen behind what was sent, or where it was interrupted, and waits until all is done.

@@ -101,6 +101,8 @@ function take(update) {
   }
   const [kind, text] = BANNERS[update.state];
   const wants = update.wants && !["stopped", "running"].includes(update.state) ? update.wants : "";
+  const wanted = wants.match(/^pen (\d+) is wanted/);
+  $("banner").style.borderLeft = wanted ? "16px solid " + colour(wanted[1] < 2 ? "ink" : "pen" + ((wanted[1] - 2) % 7 + 1)) : "";
   banner(kind, update.state === "failed" ? update.failure + " The recording up to here is kept." : wants ? wants[0].toUpperCase() + wants.slice(1) + "." : text);
   document.body.dataset.state = update.state;
   $("start").disabled = update.state !== "ready";
@@ -152,6 +154,7 @@ function connect() {
   socket = new WebSocket(location.href.replace(/^http/, "ws").replace(/\/?$/, "/") + "socket");
   socket.onmessage = (event) => { take(JSON.parse(event.data)); if (!due) { due = true; requestAnimationFrame(paint); } };
   socket.onclose = () => {
+    letGo();
     for (const name of ["start", "pause", "resume", "stop"]) $(name).disabled = true;
     if (last && (last.state === "done" || last.state === "failed")) return;
     banner("bad", "The program that drives the machine does not answer any more: this page stops nothing now.");
@@ -174,15 +177,23 @@ function room(x, y) {
   const [x0, y0, x1, y1] = data.box, along = (sign, at, low, high) => sign ? Math.max(0, sign < 0 ? at - low : high - at) : Infinity;
   return Math.min(along(x, last.at[0], x0, x1), along(y, last.at[1], y0, y1));
 }
-let isHeld = false;
+const PIECE_MS = 100; // a held key moves it by so much at a time: what stops asking, stops it
+let held = null;
 const value = (id) => Number($(id).value) || 0;
-function jog(direction) {
-  const step = Number($("step").value), [x, y] = direction.split(" ").map(Number), by = step || Math.floor(room(x, y) * 1e3) / 1e3;
-  if (!by) return;
-  isHeld = !step;
-  ask(["jog", x * by, y * by, Math.max(0.1, value("jog-speed"))].join(" "));
+const jogSpeed = () => Math.max(0.1, value("jog-speed"));
+function jogBy(direction, by) {
+  const [x, y] = direction.split(" ").map(Number);
+  if (by > 0) ask(["jog", x * by, y * by, jogSpeed()].join(" "));
 }
-function letGo() { if (isHeld) { isHeld = false; ask("end-jog"); } }
+function jog(direction) {
+  const step = Number($("step").value), [x, y] = direction.split(" ").map(Number);
+  if (step) { jogBy(direction, step); return; }
+  letGo();
+  const piece = (times) => jogBy(direction, Math.floor(Math.min(jogSpeed() * PIECE_MS * 1e-3 * times, room(x, y)) * 1e3) / 1e3);
+  piece(2); // one ahead, so that it does not stop between two of them
+  held = setInterval(() => piece(1), PIECE_MS);
+}
+function letGo() { if (held !== null) { clearInterval(held); held = null; ask("end-jog"); } }
 if (data.hand) {
   $("hand").hidden = $("keys-by-hand").hidden = false;
   for (const each of document.querySelectorAll("[data-jog]")) {
