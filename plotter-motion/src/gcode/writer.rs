@@ -188,7 +188,8 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
         Ok(())
     }
 
-    /// Lifts the pen where it is, if it is not lifted; the operations that come next lower it as they need it.
+    /// Lifts the pen where it is, if it is not lifted; the operations that come next lower it as they need
+    /// it.
     ///
     /// # Errors
     ///

@@ -220,8 +220,8 @@ fn a_machine_that_forgot_its_count_without_a_word_is_found_out() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
 
-    /// Whatever bytes come wrong on either way, one in each line of the host, the machine takes each line once and in its order, or the host
-    /// stops and says so.
+    /// Whatever bytes come wrong on either way, one in each line of the host, the machine takes each line
+    /// once and in its order, or the host stops and says so.
     #[test]
     fn lines_arrive_once_and_in_order_over_a_bad_line(seed: u64, of in 20_usize..400, count in 1_usize..40) {
         let ops = lines(count);

@@ -15,8 +15,8 @@ const STROKES_TO: &str = "PLOTTER_STROKES_TO";
 /// Speed with the pen down and up, mm/s, acceleration, mm/s², and deviation at corners, mm: what saxi has as
 /// its defaults with the pen down, and its speed with the pen up.
 const LIMITS: (f64, f64, f64, f64) = (50.0, 200.0, 200.0, 0.127);
-/// What a motor feels is the second difference of places so far apart, ticks: 40 ms, in which a step of 1/80 mm
-/// is 4 % of the limit.
+/// What a motor feels is the second difference of places so far apart, ticks: 40 ms, in which a step of 1/80
+/// mm is 4 % of the limit.
 const LENS: usize = 1_000;
 
 fn limits(path: PathMode) -> PlannerSettings {

@@ -300,8 +300,8 @@ impl Live {
         Ok(state)
     }
 
-    /// Goes through a drawing once: what of it cannot be read, whether the machine reaches all of it, how long
-    /// it takes.
+    /// Goes through a drawing once: what of it cannot be read, whether the machine reaches all of it, how
+    /// long it takes.
     fn look_at(
         &self,
         drawing: &DrawingFile,

@@ -52,8 +52,9 @@ pub enum Hand {
 }
 
 impl Hand {
-    /// The command of these words: `next`, `jog X Y F`, `end-jog`, `go X Y`, `pen up`, `pen down`, `pen-down S`,
-    /// `home`, `unlock`, `origin X Y`, `feed P`, `line X Y X Y F`, `rectangle X Y W H F`, `circle X Y R N F`.
+    /// The command of these words: `next`, `jog X Y F`, `end-jog`, `go X Y`, `pen up`, `pen down`, `pen-down
+    /// S`, `home`, `unlock`, `origin X Y`, `feed P`, `line X Y X Y F`, `rectangle X Y W H F`, `circle X Y R N
+    /// F`.
     fn from_words(words: &str) -> Option<Self> {
         let mut words = words.split_ascii_whitespace();
         let name = words.next()?;
@@ -98,8 +99,8 @@ impl Hand {
 }
 
 impl Command {
-    /// The command of a name: `start`, `pause`, `resume`, `stop`, `clear`, or of one by hand with its numbers:
-    /// `jog 10 0 30`.
+    /// The command of a name: `start`, `pause`, `resume`, `stop`, `clear`, or of one by hand with its
+    /// numbers: `jog 10 0 30`.
     ///
     /// ```
     /// # use plotter_replay::live::Command;

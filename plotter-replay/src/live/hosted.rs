@@ -164,8 +164,8 @@ impl<'a, W: Write> HostedEngine<'a, W> {
         let speed = |mm_s: f64| (mm_s > 0.0).then_some(mm_s);
         let draws: Vec<PlotOp> = match hand {
             Hand::Next => return self.host.ask(now, Request::Next),
-            // While a key is held pieces come ten times a second: what the machine has no room for, it need not
-            // make, and where there is no word to end one, its pieces end by themselves.
+            // While a key is held pieces come ten times a second: what the machine has no room for, it need
+            // not make, and where there is no word to end one, its pieces end by themselves.
             Hand::Jog(by, feed_mm_s) => match self.host.ask(now, Request::Jog { by, feed_mm_s }) {
                 Err(NotNow::Busy) => return Ok(()),
                 done => return done,

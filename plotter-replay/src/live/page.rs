@@ -42,7 +42,8 @@ pub struct LivePage {
     pub facts: Vec<(String, String)>,
     /// Whether the machine is led by hand, too: the page has a panel for it.
     pub has_hand: bool,
-    /// Whether nothing on the line tells where the pen is on its way: the page shows what is known to be done.
+    /// Whether nothing on the line tells where the pen is on its way: the page shows what is known to be
+    /// done.
     pub shows_done: bool,
     settings: PlotterSettings,
     meant: Desired,

@@ -32,8 +32,8 @@ pub struct Heading {
 
 /// Shows a session in the terminal until it ends or the user quits; says whether he did. Enter starts, space
 /// pauses and resumes, Esc stops, c clears, q quits. A machine that is led by lines is led by hand, too: the
-/// arrows move it by the step that 1, 2 and 3 choose (0.1, 1, 10 mm), u and d lift and lower its pen, h leads it
-/// home, l unlocks it, n draws the next operation only, o says that it is at the origin.
+/// arrows move it by the step that 1, 2 and 3 choose (0.1, 1, 10 mm), u and d lift and lower its pen, h leads
+/// it home, l unlocks it, n draws the next operation only, o says that it is at the origin.
 ///
 /// # Errors
 ///

@@ -12,8 +12,8 @@ use plotter_motion::kinematics::BeltSigns;
 /// command XM calls that one A and our x B.
 const AXIDRAW: BeltSigns = BeltSigns::TrackingEquations;
 
-/// The machine with this description, at its origin, behind an EBB: both motors on one belt as in the AxiDraw,
-/// or each with an axis.
+/// The machine with this description, at its origin, behind an EBB: both motors on one belt as in the
+/// AxiDraw, or each with an axis.
 pub(crate) fn ebb(machine: &Machine, is_mixed: bool) -> Simulation<EbbBoard, Steppers> {
     let world = Steppers::of(machine).with_belt(is_mixed.then_some(AXIDRAW));
     Simulation::new(EbbBoard::switched_on(), world, machine.config().serial.baud)

@@ -110,7 +110,8 @@ fn a_pause_before_a_change_of_pens_does_not_change_it() {
         desk.until(&[HostState::Done], LONG);
         desk.ink()
     };
-    // The change waits in the queue when it is paused: nothing of it was sent, and the other pen is in the holder.
+    // The change waits in the queue when it is paused: nothing of it was sent, and the other pen is in the
+    // holder.
     let mut desk = desk([there_and_back(1, 2.0), there_and_back(4, 6.0)].concat());
     desk.ask(Request::GoOn);
     while !desk.sent.windows(4).any(|words| words == b"SP1;") {

@@ -358,7 +358,8 @@ fn without_a_word_for_a_hold_a_pause_comes_behind_the_line_under_way_and_so_does
         let asked = desk.now();
         desk.ask(ask);
         if ask == Request::Stop {
-            // What it draws is drawn to its end: a line in the middle of it would end it (the firmware's trap).
+            // What it draws is drawn to its end: a line in the middle of it would end it (the firmware's
+            // trap).
             assert_eq!(desk.host.status().state, HostState::Stopped);
             desk.ask(Request::Unlock);
         }

@@ -1,5 +1,5 @@
-//! `live` with machines that are led by lines, each on a pseudo terminal: drawn whole, killed and gone on with,
-//! and what can go wrong at the desk.
+//! `live` with machines that are led by lines, each on a pseudo terminal: drawn whole, killed and gone on
+//! with, and what can go wrong at the desk.
 #![cfg(unix)]
 
 use std::io::{BufRead as _, BufReader, Read as _};

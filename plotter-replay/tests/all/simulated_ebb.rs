@@ -150,7 +150,8 @@ fn steps_at_a_constant_speed_come_at_even_ticks() {
     // The command is taken from the queue in tick 1, and begins in tick 2.
     let first: Vec<u128> = desk.steps.iter().filter(|step| step.1 != 0).map(|step| step.0 - 1).collect();
     assert!(first.iter().zip(1..).all(|(&tick, n)| tick == 8 * n), "{:?}", &first[..9]);
-    // 625 steps of 2³¹ · 625 / 25000 = 53687091.2, of which the fifth is left out: 40 ticks and, late, one more
+    // 625 steps of 2³¹ · 625 / 25000 = 53687091.2, of which the fifth is left out: 40 ticks and, late, one
+    // more
     let second: Vec<u128> = desk.steps.iter().filter(|step| step.2 != 0).map(|step| step.0 - 1).collect();
     assert_eq!((second[0], second[624]), (41, 25_001));
     assert_eq!(desk.ask("QS\r"), "3125,-625\n\rOK\r\n");
@@ -175,7 +176,8 @@ fn steps_that_grow_faster_come_as_the_documented_sums_say() {
 
 #[test]
 fn accumulators_keep_what_is_over_unless_they_are_cleared() {
-    // 3/4 of a step a tick: after a step half of one is over, so that the next move's first step comes at once.
+    // 3/4 of a step a tick: after a step half of one is over, so that the next move's first step comes at
+    // once.
     let rate = 3 * (1_u32 << 29);
     for (clear, ticks) in [(0, 1), (1, 2), (3, 2)] {
         let mut desk = Desk::new();

@@ -1,5 +1,5 @@
-//! What `live` is given that is no HPGL and no G-code: an SVG, a DXF or a picture, made into a drawing first by
-//! the tools of this program.
+//! What `live` is given that is no HPGL and no G-code: an SVG, a DXF or a picture, made into a drawing first
+//! by the tools of this program.
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};

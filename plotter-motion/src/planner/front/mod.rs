@@ -52,7 +52,8 @@ pub(super) struct Front<M: Modes> {
     pen: Pen,
     power: u16,
     run: Option<Run>,
-    /// Square of the greatest speed on a segment that is too short for a block and is held back; 0 if none is.
+    /// Square of the greatest speed on a segment that is too short for a block and is held back; 0 if none
+    /// is.
     short_cruise2: f32,
     put_off: M::Kept<PutOff>,
     shares: M::Kept<Shares>,

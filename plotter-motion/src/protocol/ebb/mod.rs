@@ -2,8 +2,8 @@
 //! commands.
 //!
 //! The board makes steps at the ticks of a clock of 25 kHz. In each tick it adds a rate to an accumulator of
-//! 31 bits for each motor, and where that overflows the motor makes a step. It looks no command ahead, so that
-//! whoever sends the commands has to brake before a corner.
+//! 31 bits for each motor, and where that overflows the motor makes a step. It looks no command ahead, so
+//! that whoever sends the commands has to brake before a corner.
 //!
 //! ```text
 //!  Planner ──Action──▶ EbbMotion ──EbbCommand──▶ board, or Accumulators

@@ -111,8 +111,8 @@ impl Way {
         Some(Self { steps, sign, speed: mean - 0.5 * accel * ms, accel })
     }
 
-    /// How far it is at most from its place; or from where it would be on its way in the rhythm of the samples,
-    /// and a step. Steps.
+    /// How far it is at most from its place; or from where it would be on its way in the rhythm of the
+    /// samples, and a step. Steps.
     fn off(&self, from: i32, samples: &[MotorPoint], of: Of) -> f64 {
         let (Some(first), Some(last)) = (samples.first().map(of), samples.last().map(of)) else { return 0.0 };
         let count = as_float(samples.len() - 1);
@@ -135,8 +135,8 @@ impl Way {
         if wanted == 0 {
             return MotorRate::default();
         }
-        // With the rate rounded up the last step is made in the last tick at the latest. What rounding does to
-        // the acceleration must not make a rate less than none, which is the greatest to the board.
+        // With the rate rounded up the last step is made in the last tick at the latest. What rounding does
+        // to the acceleration must not make a rate less than none, which is the greatest to the board.
         for _ in 0..4 {
             let rate = (wanted - accel * (ticks * (ticks + 1) / 2)).div_euclid(ticks) + 1 + accel / 2;
             let (first, last) = (rate - accel / 2 + accel, rate - accel / 2 + accel * ticks);

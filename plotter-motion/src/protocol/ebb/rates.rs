@@ -26,8 +26,8 @@ pub struct MotorRate {
 
 impl MotorRate {
     /// `steps` in `duration_ms` at a constant speed, as the command SM makes it: as nearly as whole rates
-    /// allow, and for up to 30 ms with the upper 16 bits of the rate only, which the firmware computes in less
-    /// time (EBB firmware 2.8.1, `process_SM`).
+    /// allow, and for up to 30 ms with the upper 16 bits of the rate only, which the firmware computes in
+    /// less time (EBB firmware 2.8.1, `process_SM`).
     ///
     /// ```
     /// # use plotter_motion::protocol::ebb::MotorRate;
@@ -55,8 +55,8 @@ impl MotorRate {
     }
 }
 
-/// The command LM: each motor makes its steps by a rate that changes evenly, and the command is over when both
-/// have made them.
+/// The command LM: each motor makes its steps by a rate that changes evenly, and the command is over when
+/// both have made them.
 ///
 /// ```
 /// # use plotter_motion::protocol::ebb::{LowLevelMove, MotorRate};

@@ -53,7 +53,8 @@ const ANSWER: Duration = Duration::from_millis(700);
 /// firmware, mDraw's machine, EBB's version, the identity of a pen plotter.
 const QUESTIONS: [&[u8]; 5] = [b"?", b"\nM115\n", b"M10\n", b"\rV\r", b"\x1b.(;OI;"];
 
-/// Finds out which language a machine speaks: it listens for a greeting first, then asks once in each; sans-IO.
+/// Finds out which language a machine speaks: it listens for a greeting first, then asks once in each;
+/// sans-IO.
 ///
 /// ```
 /// # use plotter_motion::protocol::hosts::{Finder, Finding, Tongue};

@@ -11,9 +11,9 @@ use core::time::Duration;
 /// Bytes of lines that GRBL keeps before it takes them: 128, of which a ring keeps one free in some versions.
 const RX_BYTES: usize = 127;
 
-/// GRBL's language (its wiki, "Grbl v1.1 Interface"): lines answered by `ok` or `error:N` once they are taken,
-/// so many of them on the way that its buffer of 128 bytes is never full (character counting); orders of one
-/// byte past all lines; `?` is answered by a report at once.
+/// GRBL's language (its wiki, "Grbl v1.1 Interface"): lines answered by `ok` or `error:N` once they are
+/// taken, so many of them on the way that its buffer of 128 bytes is never full (character counting); orders
+/// of one byte past all lines; `?` is answered by a report at once.
 #[derive(Clone, Debug)]
 pub struct Grbl<'a> {
     words: GcodeWords<'a>,
@@ -23,7 +23,8 @@ pub struct Grbl<'a> {
 }
 
 impl<'a> Grbl<'a> {
-    /// With these words for the pen. Coordinates have three decimals, whatever the options say: arcs need them.
+    /// With these words for the pen. Coordinates have three decimals, whatever the options say: arcs need
+    /// them.
     #[must_use]
     pub fn new(options: WriteOptions<'a>) -> Self {
         Self {

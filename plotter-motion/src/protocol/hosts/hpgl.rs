@@ -24,12 +24,12 @@ const SPEEDS: (f64, f64) = (1.0, 38.0);
 
 /// HPGL for a plotter with device control, as Hewlett-Packard's 7470A to 7595A have it.
 ///
-/// - Behind each line the plotter is asked how many bytes of its buffer are free (`ESC .B`), and the next goes
-///   out when there is room for it: no handshake of the line itself is needed.
+/// - Behind each line the plotter is asked how many bytes of its buffer are free (`ESC .B`), and the next
+///   goes out when there is room for it: no handshake of the line itself is needed.
 /// - It is asked for its errors (`OE`, `ESC .E`) and for its place (`OA`) at each rest.
 /// - It changes pens by itself.
-/// - There is no word for a stop. `ESC .K` drops what is buffered; the line that it draws is drawn to its end.
-///   Whoever has to stop it at once switches it off.
+/// - There is no word for a stop. `ESC .K` drops what is buffered; the line that it draws is drawn to its
+///   end. Whoever has to stop it at once switches it off.
 /// - Nothing guards against bytes that come wrong: an error is told by its number, and the place at rest.
 ///
 /// ```
@@ -162,8 +162,9 @@ impl Language for Hpgl {
 
     fn rest(&mut self, out: &mut OpText) {
         let _ = self.lead(out); // there is room for all of it in an empty text
-        // The error of the line is told behind an E, as it comes before what is asked in the drawing. The units to
-        // the millimetre come before a place that is one of rest: an answer to an earlier question has none.
+        // The error of the line is told behind an E, as it comes before what is asked in the drawing. The
+        // units to the millimetre come before a place that is one of rest: an answer to an earlier question
+        // has none.
         let _ = out.write_str("\x1b.M;;;10;0;69:\x1b.E\x1b.M;;;10:PU;OE;OF;OA;\n");
     }
 

@@ -5,8 +5,8 @@ use crate::gcode::WriteError;
 use crate::{PlotOp, Point, Vec2};
 use core::time::Duration;
 
-/// Text of an operation, all of its lines: an arc of more than three quarters of a turn has two, and before it
-/// the pen is lowered and waited for.
+/// Text of an operation, all of its lines: an arc of more than three quarters of a turn has two, and before
+/// it the pen is lowered and waited for.
 pub type OpText = Words<384>;
 
 /// What a machine is doing, as it says.
@@ -80,8 +80,8 @@ pub trait Language {
     const END_JOG: Option<u8> = None;
     /// Whether a line is answered when it is carried out, not when it is taken.
     const ANSWERS_WHEN_DONE: bool = false;
-    /// Whether lines have numbers and checksums ([`frame`](Self::frame)): the machine takes each once, so that
-    /// one that is not answered may go out again.
+    /// Whether lines have numbers and checksums ([`frame`](Self::frame)): the machine takes each once, so
+    /// that one that is not answered may go out again.
     const IS_NUMBERED: bool = false;
     /// What it answers at once, in the middle of anything, with whether it has room for a line
     /// ([`Answer::Taken`], else [`Answer::Busy`]): asked while a line is not answered. Empty where there is
@@ -169,7 +169,8 @@ pub trait Language {
         line.iter().all(|&byte| out.push(byte))
     }
 
-    /// How long a machine may stand still for a line of its own, such as while its pen moves, and not answer it.
+    /// How long a machine may stand still for a line of its own, such as while its pen moves, and not answer
+    /// it.
     fn stands_for(&self) -> Duration {
         Duration::ZERO
     }

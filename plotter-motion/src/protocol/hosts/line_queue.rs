@@ -133,9 +133,9 @@ impl LineQueue {
         if self.sent == 0 { None } else { self.pass() }
     }
 
-    /// The machine wants the line of this number: the oldest before it is taken, whether it is out again or not.
-    /// What it was for; `None` where there is none, or the number is that of no line that was ever out, nor of
-    /// the next.
+    /// The machine wants the line of this number: the oldest before it is taken, whether it is out again or
+    /// not. What it was for; `None` where there is none, or the number is that of no line that was ever out,
+    /// nor of the next.
     pub(super) fn take_before(&mut self, number: u64) -> Option<Purpose> {
         if self.answered >= number || number > self.ever_sent { None } else { self.pass() }
     }
@@ -165,8 +165,8 @@ impl LineQueue {
         true
     }
 
-    /// Forgets what the machine cannot have seen, but for the rest of an operation of which it has seen a part.
-    /// The first operation of the drawing that is forgotten, if one is.
+    /// Forgets what the machine cannot have seen, but for the rest of an operation of which it has seen a
+    /// part. The first operation of the drawing that is forgotten, if one is.
     pub(super) fn drop_unsent(&mut self) -> Option<u64> {
         let ever_sent = usize::try_from(self.ever_sent.saturating_sub(self.answered)).unwrap_or(usize::MAX);
         let mut keep = self.kept + (self.sent + usize::from(self.bytes_sent > 0)).max(ever_sent);

@@ -12,8 +12,8 @@ use core::time::Duration;
 const UNKNOWN: u16 = 1;
 /// The code for one whose parameters it cannot carry out.
 const PARAMETERS: u16 = 2;
-/// The code of [`Alarm`](super::MachineNotice::Alarm) for a machine that has halted: the number of the command
-/// that does it.
+/// The code of [`Alarm`](super::MachineNotice::Alarm) for a machine that has halted: the number of the
+/// command that does it.
 const HALTED: u16 = 112;
 
 /// Marlin's language: lines with a number and a checksum, each answered by `ok` once it is planned.
@@ -24,9 +24,9 @@ const HALTED: u16 = 112;
 ///   so an answer that came wrong costs nothing. Only a line that lost its number on the way is taken without
 ///   looking at its checksum: a move to the same place once more.
 /// - `echo:busy: processing` says that a line takes long. `G4 P0` and `M114` tell where the machine rests.
-///   `M400` would wait as well, but its emergency parser acts on a damaged line, too: one bit makes it `M410`,
-///   which drops what is planned. So do not use it for the pen either. What begins the count, `M110`, is one
-///   bit from `M112`, which halts the machine, and says so; it is sent once, before the drawing.
+///   `M400` would wait as well, but its emergency parser acts on a damaged line, too: one bit makes it
+///   `M410`, which drops what is planned. So do not use it for the pen either. What begins the count, `M110`,
+///   is one bit from `M112`, which halts the machine, and says so; it is sent once, before the drawing.
 /// - A stop (`M112`) halts the machine until it is reset, and it has lost its place then. Its firmware needs
 ///   `EMERGENCY_PARSER`, else the stop waits behind what is planned.
 /// - Pens on a servo are moved by `M280`, which acts at once: `G4 P0` waits before.

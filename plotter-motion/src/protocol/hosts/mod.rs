@@ -15,9 +15,9 @@
 //! | [`EbbHost`] | AxiDraw, EggBot | a command at a time | `QS` | `ES` |
 //! | [`MDraw`] | Makeblock's XY plotter | a line at a time | `P` | none |
 //!
-//! All of them but [`EbbHost`], which plans the motion itself, are [`LineHost`]s of a [`Language`]. A machine of
-//! the published digits, or of our link, has [`Host`](super::Host) and [`LinkHost`](super::LinkHost), whose targets
-//! are counts.
+//! All of them but [`EbbHost`], which plans the motion itself, are [`LineHost`]s of a [`Language`]. A machine
+//! of the published digits, or of our link, has [`Host`](super::Host) and [`LinkHost`](super::LinkHost),
+//! whose targets are counts.
 
 mod ebb;
 mod finder;
@@ -51,8 +51,8 @@ use core::time::Duration;
 
 /// A host of a machine, whatever that speaks.
 pub trait MachineHost {
-    /// Looks at the clock; call it again at [`next_wake`](Self::next_wake) at the latest. Says what is new, one
-    /// thing at a time.
+    /// Looks at the clock; call it again at [`next_wake`](Self::next_wake) at the latest. Says what is new,
+    /// one thing at a time.
     fn poll(&mut self, now: Duration) -> Option<MachineNotice>;
 
     /// The next byte for the line, if there is one for it now.

@@ -168,8 +168,8 @@ impl Trail {
         }
     }
 
-    /// Of operations that were sent, perhaps, by an earlier host: those up to the one that ends here are done.
-    /// Says whether there is one, the last of them before which nothing ends elsewhere.
+    /// Of operations that were sent, perhaps, by an earlier host: those up to the one that ends here are
+    /// done. Says whether there is one, the last of them before which nothing ends elsewhere.
     pub(super) fn rests_at(&mut self, at: Point, within_mm: f64) -> bool {
         let start = self.ops.get(0).map_or(self.end, |first| first.from);
         if start.distance(at) <= within_mm {

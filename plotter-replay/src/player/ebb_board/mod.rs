@@ -18,8 +18,8 @@ use std::collections::VecDeque;
 const TICK: Duration = Duration::from_nanos(1_000_000_000 / TICK_HZ as u64);
 /// Longest line, bytes: what is longer is refused.
 const MOST_LINE: usize = 256;
-/// Bytes of the host that wait behind a command that waits. A board on USB takes none meanwhile, and they wait
-/// at the host.
+/// Bytes of the host that wait behind a command that waits. A board on USB takes none meanwhile, and they
+/// wait at the host.
 const MOST_WAITING: usize = 65_536;
 /// Sixteenths of a full step.
 const MOST_PARTS: u8 = 16;
@@ -29,8 +29,8 @@ const MOST_PARTS: u8 = 16;
 ///
 /// - Steps come at ticks of 40 µs, as the documented accumulators make them. Each step is given as so many
 ///   sixteenths of a full step as the step mode makes it.
-/// - One command waits behind the one that runs. A third one is answered only when it finds room there, and no
-///   line behind it is looked at before: not even the one that stops.
+/// - One command waits behind the one that runs. A third one is answered only when it finds room there, and
+///   no line behind it is looked at before: not even the one that stops.
 /// - The pen's servo goes to where it is sent by its rate, every 24 ms.
 /// - Pressing the emergency stop cuts the motors' supply, as pulling its plug does: the board counts on while
 ///   they stand, and QC says so. A switch of the name `prg` is the board's button.

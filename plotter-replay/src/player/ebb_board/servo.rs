@@ -3,8 +3,8 @@
 use plotter_motion::Pen;
 use plotter_motion::protocol::ebb::TICKS_PER_MS;
 
-/// The servo that lifts the pen: a pulse whose length changes by a rate each time that it comes. Lengths are in
-/// units of 1/12 µs.
+/// The servo that lifts the pen: a pulse whose length changes by a rate each time that it comes. Lengths are
+/// in units of 1/12 µs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Servo {
     /// Length of the pulse with the pen up, and with the pen down.

@@ -80,9 +80,9 @@ impl Handshake {
 ///   room there is lost, which is error 16 of `ESC .E`.
 /// - `ESC .B` tells the bytes that are free, `ESC .L` the size of the buffer once it is empty, `ESC .O`
 ///   whether it is empty (8) and whether the machine was stopped at its own controls (16).
-/// - `ESC .I` and `ESC .N` choose the characters and the threshold of XON and XOFF, `ESC .M` those of answers,
-///   `ESC .R` the usual ones. `ESC .K` drops what is buffered; what the plotter has planned is still drawn. The
-///   line DTR is not there, so that `ESC .@` changes nothing, nor is the handshake by enquiry.
+/// - `ESC .I` and `ESC .N` choose the characters and the threshold of XON and XOFF, `ESC .M` those of
+///   answers, `ESC .R` the usual ones. `ESC .K` drops what is buffered; what the plotter has planned is still
+///   drawn. The line DTR is not there, so that `ESC .@` changes nothing, nor is the handshake by enquiry.
 /// - A pen change takes 1 s, during which the machine stands. Lines are cut at the area.
 /// - A limit switch or the button stops the machine until it is reset.
 ///

@@ -9,7 +9,8 @@ use plotter_motion::firmware::stepper_plotter::StepperPlotterSettings;
 use plotter_motion::gcode::PenConvention;
 use plotter_motion::{Point, StepPair};
 
-/// Longest line of the plotter that is kept, bytes: its status reports are the longest, and none is asked for.
+/// Longest line of the plotter that is kept, bytes: its status reports are the longest, and none is asked
+/// for.
 const MOST_ANSWER: usize = 128;
 /// Stops at once; the place stays known.
 const RESET: u8 = 0x18;

@@ -76,16 +76,16 @@ impl Pose {
     };
 }
 
-/// A controller that answers as Marlin 2.1 with `EMERGENCY_PARSER`, `ARC_SUPPORT` and a servo for the pen, but
-/// without `ADVANCED_OK`.
+/// A controller that answers as Marlin 2.1 with `EMERGENCY_PARSER`, `ARC_SUPPORT` and a servo for the pen,
+/// but without `ADVANCED_OK`.
 ///
 /// - A line may have a number and a checksum. One that is damaged, or not the next, is asked for again, and
 ///   the bytes behind it are dropped.
 /// - `ok` comes when a command has been carried out: of a movement, when it is planned.
 /// - Movements go at the speed `F` whether the pen is up or down. Until it has been homed the place where it
 ///   was switched on is (0, 0), and nothing but the frame ends its way; afterwards targets end at the area.
-/// - `M280` moves the pen at once, also in the middle of planned ways: a host waits by `M400` before. `M3` and
-///   `M5` wait by themselves; they lower and lift.
+/// - `M280` moves the pen at once, also in the middle of planned ways: a host waits by `M400` before. `M3`
+///   and `M5` wait by themselves; they lower and lift.
 /// - `M112`, the button, and a limit switch that is met outside of homing halt it until it is reset
 ///   (`KILL_PIN`). It has lost its place then.
 ///

@@ -149,7 +149,8 @@ impl Desk {
     }
 }
 
-/// With room for the drawing, switches where homing finds them soon, and a pen that waits for next to nothing.
+/// With room for the drawing, switches where homing finds them soon, and a pen that waits for next to
+/// nothing.
 pub(crate) fn machine() -> Machine {
     let mut config = MachineConfig::stepper_plotter();
     (config.area.width_mm, config.area.height_mm) = (60.0, 40.0);

@@ -93,7 +93,8 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
         let Some(told) = self.place.take() else { return };
         let at = StepPoint::new(told.x.wrapping_sub(self.zero.x), told.y.wrapping_sub(self.zero.y));
         if let (Phase::Unheard(_), Some((done, sent))) = (self.phase, self.earlier.take()) {
-            // Pens that were selected behind what was done for certain: in the holder, if what follows was drawn.
+            // Pens that were selected behind what was done for certain: in the holder, if what follows was
+            // drawn.
             let mut pens = Ring::<(u64, u8), MOST_PENS>::new();
             while self.index < sent
                 && let Some(op) = self.ops.next()

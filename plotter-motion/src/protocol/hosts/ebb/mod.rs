@@ -127,12 +127,14 @@ enum Then {
 /// each when the one before is taken.
 ///
 /// - A pause brakes along the path and lifts the pen; to go on puts it back.
-/// - A stop is ES, which the board looks at as soon as a move finds room in its queue: at most two moves of 64
-///   ms later. Where the motors stand then is asked with QS, and the drawing goes on from there.
+/// - A stop is ES, which the board looks at as soon as a move finds room in its queue: at most two moves of
+///   64 ms later. Where the motors stand then is asked with QS, and the drawing goes on from there.
 /// - No line has a checksum. At each lifting of the pen the board is asked for its count of steps, and what a
 ///   line did that came wrong is told ([`MachineNotice::Elsewhere`]), counted and taken back.
-/// - A line that the board refuses is sent again. After [`EbbHostSettings::silence`] an answer counts as lost.
-/// - By hand the machine moves at a tenth of the travel speed, 20 mm/s at most: at constant speed, as SM does.
+/// - A line that the board refuses is sent again. After [`EbbHostSettings::silence`] an answer counts as
+///   lost.
+/// - By hand the machine moves at a tenth of the travel speed, 20 mm/s at most: at constant speed, as SM
+///   does.
 ///
 /// ```
 /// # use plotter_motion::kinematics::{BeltSigns, CoreXy};
@@ -244,9 +246,9 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
         })
     }
 
-    /// The same, which goes on where an earlier host has left the drawing: so many operations of it were known
-    /// to be done, so many may have been sent. Where the board counts itself to be says which; its motors must
-    /// have stayed switched on.
+    /// The same, which goes on where an earlier host has left the drawing: so many operations of it were
+    /// known to be done, so many may have been sent. Where the board counts itself to be says which; its
+    /// motors must have stayed switched on.
     #[must_use]
     pub fn resuming(mut self, done: u64, sent: u64) -> Self {
         self.earlier = Some((done, sent));
@@ -318,7 +320,8 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> MachineHost for EbbHost<
         if waits && now.saturating_sub(since) >= self.settings.silence {
             self.spoke = Some(now);
             if self.is_heard && !self.is_silent {
-                // The board has taken the line: it would have refused it, or waits for room, and answers then.
+                // The board has taken the line: it would have refused it, or waits for room, and answers
+                // then.
                 self.notice(MachineNotice::AnswerLost);
                 self.is_silent = true;
                 self.taken();

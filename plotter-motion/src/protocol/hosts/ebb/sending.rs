@@ -140,7 +140,8 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
             }
             Phase::Lifted(then) if self.next.is_none() => {
                 if self.rest.is_some() {
-                    // Another wait behind the pen's: once that is taken, the pen's runs, and the motors stand.
+                    // Another wait behind the pen's: once that is taken, the pen's runs, and the motors
+                    // stand.
                     let wait = EbbCommand::Constant { duration_ms: 1, steps: [0; 2] };
                     self.next = Some((wait, self.motion.made()));
                     return false;

@@ -228,8 +228,8 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
         self.push(&text, Purpose::Question);
     }
 
-    /// Operations that an earlier host may have sent, up to the next change of what is in the machine: it rested
-    /// there. That change, if it was not made for certain.
+    /// Operations that an earlier host may have sent, up to the next change of what is in the machine: it
+    /// rested there. That change, if it was not made for certain.
     fn take_earlier(&mut self, earlier: Earlier) -> Option<Then> {
         while self.index < earlier.sent {
             let op = self.ops.next()?;
@@ -302,7 +302,8 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
         };
     }
 
-    /// How far from where it was led the machine may say to rest: two steps, where it tells how long they are.
+    /// How far from where it was led the machine may say to rest: two steps, where it tells how long they
+    /// are.
     pub(super) fn rest_within_mm(&self) -> f64 {
         let [x, y] = self.language.limits().steps_per_mm;
         match (x, y) {

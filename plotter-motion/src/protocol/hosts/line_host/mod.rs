@@ -18,20 +18,22 @@ const MOST_ANSWER: usize = 192;
 const MOST_NOTICES: usize = 16;
 /// Bytes past the lines that wait.
 const MOST_URGENT: usize = 32;
-/// Free lines before an operation is written: two of an arc, three to lower the pen, and the beginning's four.
+/// Free lines before an operation is written: two of an arc, three to lower the pen, and the beginning's
+/// four.
 const ROOM_FOR_OP: usize = 12;
 /// How often a machine is asked where it rests, where its answer comes wrong.
 const MOST_ASKS: u8 = 5;
-/// Answered lines that are kept where they have numbers: as many as the machine keeps before it reads a line's
-/// number (`BUFSIZE` of Marlin).
+/// Answered lines that are kept where they have numbers: as many as the machine keeps before it reads a
+/// line's number (`BUFSIZE` of Marlin).
 const KEPT_LINES: usize = 4;
 /// So long nothing goes out when lines came wrong, until all that the machine says of them is heard: an
 /// adapter on USB keeps bytes for up to 16 ms.
 const HEARS_OUT: Duration = Duration::from_millis(25);
-/// So many wishes for lines that are not there, without one for a line that is, show that the machine has begun anew.
+/// So many wishes for lines that are not there, without one for a line that is, show that the machine has
+/// begun anew.
 const MOST_STRAYS: u8 = 8;
-/// So many questions for room while the place at rest is not told: a minute of them, five a second. Then it is
-/// asked for again.
+/// So many questions for room while the place at rest is not told: a minute of them, five a second. Then it
+/// is asked for again.
 const QUESTIONS_FOR_REST: u16 = 300;
 /// So many reports of a machine that waits, one after the other, say that it has taken all that it will.
 const RESTS_FOR_LOST: u8 = 4;
@@ -46,7 +48,8 @@ pub struct LineHostSettings {
     /// Silence after which it says so, 5 s by default.
     pub silence: Duration,
     /// How far from where it was led a machine may say to rest, mm on each axis: 0.06 by default, four steps
-    /// of a usual plotter and more than a last decimal; two steps at most of one that tells how long they are.
+    /// of a usual plotter and more than a last decimal; two steps at most of one that tells how long they
+    /// are.
     pub rest_within_mm: f64,
 }
 
@@ -235,8 +238,8 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
         }
     }
 
-    /// The same, which goes on where an earlier host has left the drawing: so many operations of it were known
-    /// to be done, so many may have been sent. Where the machine rests says which.
+    /// The same, which goes on where an earlier host has left the drawing: so many operations of it were
+    /// known to be done, so many may have been sent. Where the machine rests says which.
     #[must_use]
     pub fn resuming(mut self, done: u64, sent: u64) -> Self {
         self.earlier = Some(Earlier { done, sent });

@@ -176,8 +176,8 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
     }
 
     /// Lines go out again when all that is said of those on the way is heard: nothing is under way then, so
-    /// that answers to what was dropped answer nothing. A line that was begun ends, lest the next be a part of
-    /// it.
+    /// that answers to what was dropped answer nothing. A line that was begun ends, lest the next be a part
+    /// of it.
     pub(super) fn hear_out(&mut self, now: Duration) {
         self.hears_until = Some(now.saturating_add(HEARS_OUT));
         if self.queue.next().is_some_and(|(_, _, is_begun)| is_begun) {
@@ -204,8 +204,8 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
         }
     }
 
-    /// Asks for room as long as a line is not answered, and, lest the silence be taken for one, until the place
-    /// at rest is told.
+    /// Asks for room as long as a line is not answered, and, lest the silence be taken for one, until the
+    /// place at rest is told.
     pub(super) fn ask_for_room(&mut self, now: Duration) {
         let waits = self.queue.in_flight().lines > 0 || self.lacks_report();
         if L::ROOM_QUERY.is_empty() || !waits {
