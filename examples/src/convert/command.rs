@@ -22,8 +22,8 @@ use std::process::ExitCode;
 /// pen, 1, 2, … in the order in which they come, or each layer (--pens). Clip paths and masks cut it, and
 /// white is taken for the paper (--paper). Its texts are set in the fonts that --font gives, and never in
 /// others, or drawn in letters of one line (--single-stroke): so a file becomes the same strokes everywhere.
-/// In SVG written here each pen is a group, and is that pen when it is read again; the sheet of an SVG stays
-/// as large as it is. Layers of a DXF are pens, its texts are set in the font of HPGL's labels.
+/// In SVG written here what one pen draws before the next is taken is a group, and is of that pen when it is
+/// read again; the sheet of an SVG stays as large as it is. Layers of a DXF are pens, its texts are set in the font of HPGL's labels.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -236,14 +236,16 @@ fn convert(arguments: &ConvertCommand, language: Language) -> Result<(), String>
     let (from, to) = (drawing.language().name(), language.name());
     let json = || {
         let written = arguments.output.display().to_string();
-        let figures = json!({ "written": written, "lines_and_arcs": drawn, "from": from, "to": to });
+        let figures = json!({
+            "written": written, "lines_and_arcs": drawn, "from": from, "to": to, "diagnostics": said.kept
+        });
         Ok(figures.to_string())
     };
     if arguments.output == Path::new("-") {
         return arguments.telling.tell_aside("", json);
     }
-    let said = format!("{}: {drawn} lines and arcs, {from} to {to}\n", arguments.output.display());
-    arguments.telling.tell(&said, json)
+    let told = format!("{}: {drawn} lines and arcs, {from} to {to}\n", arguments.output.display());
+    arguments.telling.tell(&told, json)
 }
 
 fn convention(choice: Convention) -> PenConvention {

@@ -64,8 +64,7 @@ pub struct Arrangement {
     /// --merge-mm: fast]
     #[arg(long, value_enum, value_name = "HOW")]
     pub order: Option<Effort>,
-    /// Changes the pen wherever that shortens the way, instead of once for each pen; in an SVG each pen is
-    /// one group all the same
+    /// Changes the pen wherever that shortens the way, instead of once for each pen
     #[arg(long, requires = "order")]
     pub across_pens: bool,
     /// Begins at a line of the file, with the pen, the speed and the power that hold there

@@ -213,6 +213,9 @@ impl DrawingFile {
     /// What to say where nothing is drawn: what has been seen instead, and what helps.
     #[must_use]
     pub fn nothing_drawn(&self, said: &Diagnostics) -> String {
+        if let Some(text) = self.arrangement.from_line.and_then(|line| self.nothing_from(line)) {
+            return text;
+        }
         let why = said.why_nothing();
         let text = format!("{}: nothing is drawn by it, read as {}{why}", self.name, self.language.name());
         if self.language != Language::Gcode {
@@ -227,6 +230,28 @@ impl DrawingFile {
         format!(
             "{text}; {seen}: say the lines that lift and lower it by --pen-up LINE --pen-down LINE, such as M5 and M3"
         )
+    }
+
+    /// That nothing is drawn from a line on, if something is drawn before it.
+    fn nothing_from(&self, line: u32) -> Option<String> {
+        let mut ops = self.read(Reading::default(), None).ok()?;
+        let mut last = None;
+        while let Some(op) = ops.next() {
+            if matches!(op, Ok(PlotOp::Draw { .. } | PlotOp::DrawArc { .. })) {
+                last = ops.line();
+            }
+        }
+        let (last, lines) = (last.filter(|last| *last < line)?, ops.line()?);
+        let name = &self.name;
+        Some(if lines < line {
+            format!(
+                "{name}: --from-line {line}: the file has {lines} lines, and line {last} is the last one that draws"
+            )
+        } else {
+            format!(
+                "{name}: --from-line {line}: nothing is drawn from there on: line {last} is the last one that draws"
+            )
+        })
     }
 
     /// What it is called in messages.
@@ -361,7 +386,7 @@ impl DrawingFile {
                 let (place, mut stroke) = (Rc::clone(&place), 0);
                 let ops = drawing.ops.inspect(move |op| {
                     if matches!(op, PlotOp::Travel { .. }) {
-                        let layer = begins.iter().filter(|first| **first <= stroke).count();
+                        let layer = begins.partition_point(|first| *first <= stroke);
                         place.layer.set(u32::try_from(layer).unwrap_or(0));
                         stroke += 1;
                     }
@@ -484,6 +509,10 @@ fn lifted_by(pen: gcode::PenConvention) -> String {
     }
 }
 
+/// Share of a text that makes sense in the language its name says, above which that is told: any text makes
+/// some, since every seventh pair of letters is a command of HPGL.
+const WORTH_A_WORD: f64 = 0.25;
+
 fn told(name: &str, head: &[u8], language: Option<Language>) -> Result<Language, String> {
     if head.is_empty() {
         return Err(format!("{name}: the file is empty"));
@@ -506,9 +535,18 @@ fn told(name: &str, head: &[u8], language: Option<Language>) -> Result<Language,
         ));
     }
     let language = found.ok_or_else(|| {
-        format!(
-            "{name}: this looks like none of HPGL, G-code, SVG, DXF, CAMM-GL, GP-GL and the thesis' text; if it is one, say which"
-        )
+        let named = Language::of_name(Path::new(name)).and_then(|named| Some((named, named.sense_of(head)?)));
+        match named.filter(|(_, sense)| *sense > WORTH_A_WORD) {
+            Some((named, sense)) => format!(
+                "{name}: its name says {language}, but only {:.0} % of its beginning makes sense as that: correct it, or say \
+                 that it is {language} to read it all the same",
+                (100.0 * sense).floor(),
+                language = named.name()
+            ),
+            None => format!(
+                "{name}: this looks like none of HPGL, G-code, SVG, DXF, CAMM-GL, GP-GL and the thesis' text; if it is one, say which"
+            ),
+        }
     })?;
     if let Some(line) = (language == Language::Gcode).then(|| first_extrusion(head)).flatten() {
         return Err(format!(

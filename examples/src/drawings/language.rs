@@ -57,6 +57,15 @@ impl Language {
         }
     }
 
+    /// How much of a text makes sense in this language, 0 to 1, where that is counted.
+    pub(crate) fn sense_of(self, head: &[u8]) -> Option<f64> {
+        match self {
+            Self::Hpgl => Some(sense_in_hpgl(head)),
+            Self::Gcode => Some(sense_in_gcode(head)),
+            Self::Thesis | Self::Svg | Self::CammGl | Self::GpGl | Self::Dxf => None,
+        }
+    }
+
     /// The language of a text that begins with `head`: the one in which more of it makes sense than not.
     #[must_use]
     pub fn of_contents(head: &[u8]) -> Option<Self> {

@@ -1,12 +1,13 @@
 //! [`svg_drawing`]: what an SVG picture has to draw, as plot operations.
 
-use crate::drawings::{Diagnostic, Severity, SvgReading};
+use crate::drawings::svg_text::{PEN_GROUP, pen_of_group};
+use crate::drawings::{Diagnostic, PensBy, Severity, SvgReading};
 use crate::shared::usual_colour;
 use plotter_motion::drawing::Hatching;
 use plotter_motion::{PlotOp, Point};
 use plotter_vector::{
     PxPoint, SvgOptions,
-    svg_in::{SvgDrawing, SvgFonts, SvgLayer, SvgLeftOut, SvgPens, read_svg_with_fonts},
+    svg_in::{SvgDrawing, SvgFonts, SvgLayer, SvgLeftOut, SvgPens, SvgWithoutPen, read_svg_with_fonts},
 };
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -19,9 +20,6 @@ const TOLERANCES_MM: (f64, f64) = (0.001, 10.0);
 
 /// Farthest beyond the sheet that nobody is told of, mm.
 const OUTSIDE_MM: f64 = 0.05;
-
-/// How the groups of pens are called in the SVG that [`SvgText`](crate::drawings::SvgText) writes.
-const PEN_GROUP: &str = "pen-";
 
 /// What an SVG picture has to draw.
 pub struct SvgOps {
@@ -46,7 +44,7 @@ impl fmt::Debug for SvgOps {
 /// What an SVG picture has to draw; [`read_svg_with_fonts`] says what becomes of it. Arcs stay arcs.
 ///
 /// Each colour is a pen, in the order in which they come, unless `how` says otherwise; in a picture that was
-/// written here, of which each pen is a group, the pens are those that they were. Where a layer asks for it,
+/// written here, the pens are those that they were. Where a layer asks for it,
 /// the pen waits before it. `hatch` fills closed shapes, as large as the file has them.
 ///
 /// # Errors
@@ -111,6 +109,7 @@ pub fn svg_drawing(
     let diagnostics = problems
         .chain(left_out(&svg, how))
         .chain(of_layers(&svg))
+        .chain(without_pen(&svg, how))
         .chain(beyond(&svg))
         .chain(unfilled)
         .collect();
@@ -182,11 +181,6 @@ fn of_layers(svg: &SvgDrawing) -> Vec<Diagnostic> {
     said.into_iter().map(|text| Diagnostic::new(Severity::Notice, text)).collect()
 }
 
-/// The pen that a group is of, by its name.
-fn pen_of_group(name: &str) -> Option<u8> {
-    name.strip_prefix(PEN_GROUP)?.parse().ok().filter(|pen| *pen > 0)
-}
-
 fn left_out(svg: &SvgDrawing, how: &SvgReading) -> Vec<Diagnostic> {
     let SvgLeftOut { texts, text_line, images, image_line, clip_paths, masks, filters, occluded, paper, far } =
         svg.left_out;
@@ -228,6 +222,24 @@ fn left_out(svg: &SvgDrawing, how: &SvgReading) -> Vec<Diagnostic> {
         Diagnostic { line, ..Diagnostic::new(Severity::Notice, text) }
     })
     .collect()
+}
+
+/// That there are fewer pens than colours or layers.
+fn without_pen(svg: &SvgDrawing, how: &SvgReading) -> Option<Diagnostic> {
+    let SvgWithoutPen { kinds, shapes } = svg.without_pen;
+    let (what, remedy) = match how.pens {
+        None | Some(PensBy::Colour) => {
+            ("colours", "draw with fewer colours, or give each layer a pen with --pens order")
+        }
+        Some(PensBy::Layer | PensBy::Order) => ("layers", "put several in one layer"),
+    };
+    (kinds > 0).then(|| {
+        let pens = svg.pens.len();
+        let text = format!(
+            "{what} beyond the {pens} pens: {kinds}, with {shapes} shapes, which the pen of the nearest colour draws: {remedy}"
+        );
+        Diagnostic::new(Severity::Warning, text)
+    })
 }
 
 /// What reaches beyond the sheet: shown by no viewer, and drawn all the same.

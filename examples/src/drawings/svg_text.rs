@@ -12,11 +12,16 @@ const PEN_MM: f64 = 0.3;
 /// A turn that is nearly whole has two ends in one place, which an SVG's arc cannot say, rad.
 const NEARLY_WHOLE_RAD: f64 = 0.9 * TAU;
 
-/// Gathers strokes, one path each, in a group for each pen. Millimetres from the lower left corner of the
-/// picture, which lies at the origin, or farther left and down if something is drawn there; arcs stay arcs.
+/// How the groups of pens are called.
+pub(super) const PEN_GROUP: &str = "pen-";
+
+/// Gathers strokes, one path each, in a group from one change of the pen to the next. Millimetres from the
+/// lower left corner of the picture, which lies at the origin, or farther left and down if something is drawn
+/// there; arcs stay arcs.
 #[derive(Clone, Debug, Default)]
 pub struct SvgText {
-    pens: BTreeMap<u8, String>,
+    /// What is drawn with one pen, in the order of drawing.
+    groups: Vec<(u8, String)>,
     pen: u8,
     at: Point,
     stroke: String,
@@ -117,7 +122,12 @@ impl SvgText {
 
     fn end(&mut self) {
         if !self.stroke.is_empty() {
-            let _ = writeln!(self.pens.entry(self.pen).or_default(), "<path d=\"{}\"/>", self.stroke);
+            if self.groups.last().is_none_or(|(pen, _)| *pen != self.pen) {
+                self.groups.push((self.pen, String::new()));
+            }
+            if let Some((_, strokes)) = self.groups.last_mut() {
+                let _ = writeln!(strokes, "<path d=\"{}\"/>", self.stroke);
+            }
             self.stroke.clear();
         }
     }
@@ -153,17 +163,32 @@ impl SvgText {
             short(width),
             short(height)
         );
-        for (pen, strokes) in &self.pens {
-            let colour = pen_colour(*pen, colours);
+        let mut turns = BTreeMap::new();
+        for (pen, strokes) in &self.groups {
+            let turn = turns.entry(*pen).and_modify(|turn| *turn += 1).or_insert(1);
+            let (name, colour) = (name_of_group(*pen, *turn), pen_colour(*pen, colours));
             let _ = writeln!(
                 svg,
-                "<g id=\"pen-{pen}\" transform=\"scale(1 -1)\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{PEN_MM}\" \
+                "<g id=\"{name}\" transform=\"scale(1 -1)\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{PEN_MM}\" \
                  stroke-linecap=\"round\" stroke-linejoin=\"round\">\n{strokes}</g>"
             );
         }
         svg.push_str("</svg>\n");
         svg
     }
+}
+
+/// The name of the group of a pen, from 1, that is taken for the first, the second, … time.
+fn name_of_group(pen: u8, turn: u32) -> String {
+    if turn == 1 { format!("{PEN_GROUP}{pen}") } else { format!("{PEN_GROUP}{pen}-{turn}") }
+}
+
+/// The pen whose group has this name.
+pub(super) fn pen_of_group(name: &str) -> Option<u8> {
+    let name = name.strip_prefix(PEN_GROUP)?;
+    let (pen, turn) = name.split_once('-').unwrap_or((name, "1"));
+    let is_turn = turn.parse::<u32>().is_ok();
+    pen.parse().ok().filter(|pen| *pen > 0 && is_turn)
 }
 
 /// What the last digit of a number is worth that is written, mm.
@@ -181,7 +206,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn strokes_are_paths_in_their_pens_group() {
+    fn strokes_are_paths_in_the_group_of_their_pen() {
         let mut text = SvgText::new();
         text.push(PlotOp::SelectPen { pen: 2 });
         text.push(PlotOp::Travel { to: Point::new(10.0, 5.0) });
@@ -198,6 +223,31 @@ mod tests {
         );
         assert!(svg.contains("<path d=\"M10 5L20.5 5\"/>"), "{svg}");
         assert!(svg.contains("<path d=\"M20.5 5A5 5 0 0 1 15.5 10\"/>"), "{svg}");
+    }
+
+    #[test]
+    fn a_pen_that_is_taken_again_has_a_group_more() {
+        let mut text = SvgText::new();
+        for (pen, y) in [(1, 1.0), (2, 2.0), (1, 3.0), (1, 4.0), (2, 5.0)] {
+            text.push(PlotOp::SelectPen { pen });
+            text.push(PlotOp::Travel { to: Point::new(0.0, y) });
+            text.push(PlotOp::Draw { to: Point::new(9.0, y), feed_mm_s: None });
+        }
+        let svg = text.finish(&[]);
+        let ids: Vec<&str> =
+            svg.split("<g id=\"").skip(1).filter_map(|group| group.split('"').next()).collect();
+        assert_eq!(ids, ["pen-1", "pen-2", "pen-1-2", "pen-2-2"]);
+        assert_eq!(
+            ids.iter().map(|id| pen_of_group(id)).collect::<Option<Vec<u8>>>(),
+            Some(vec![1, 2, 1, 2])
+        );
+        // The lines at 3 and 4 mm are in one group.
+        let paths: Vec<usize> =
+            svg.split("<g ").skip(1).map(|group| group.matches("<path").count()).collect();
+        assert_eq!(paths, [1, 1, 2, 1]);
+        for name in ["pen-0", "pen-256", "pen-", "pen-1-", "pen-1-x", "pen-x", "ink-1"] {
+            assert_eq!(pen_of_group(name), None, "{name}");
+        }
     }
 
     #[test]

@@ -150,17 +150,47 @@ fn strokes_are_joined_round_corners_and_in_the_order_of_the_file() {
 fn pens_are_changed_on_the_way_where_that_is_asked_for() {
     // Lines of 10 mm, 1 mm above each other, of two pens by turns.
     let text = "IN;SP1;PU0,0;PD400,0;SP2;PU0,40;PD400,40;SP1;PU0,80;PD400,80;SP2;PU0,120;PD400,120;PU;";
+    for into in ["b.plt", "b.gcode", "b.svg"] {
+        let pens = |options: &[&str]| {
+            let drawing = arranged_into(into, text, "a.plt", options).0;
+            (drawing.strokes.iter().map(|stroke| stroke.pen).collect::<Vec<_>>(), drawing.travel_mm())
+        };
+        let (by_pen, far_mm) = pens(&["--order", "best"]);
+        assert_eq!(by_pen, [1, 1, 2, 2], "{into}");
+        assert_eq!(pens(&["--order", "none", "--merge-mm", "0.05"]).0, [1, 2, 1, 2], "{into}");
+        let (by_turns, near_mm) = pens(&["--order", "best", "--across-pens"]);
+        assert_eq!(by_turns, [1, 2, 1, 2], "{into}");
+        assert!((far_mm - 5.0).abs() < 1e-3 && (near_mm - 3.0).abs() < 1e-3, "{into}: {far_mm} {near_mm}");
+    }
+}
+
+#[test]
+fn more_pens_than_a_palette_has_come_back_from_a_picture() {
+    // Twenty pens, each of which draws twice.
+    let line = |k: u32| format!("SP{};PU0,{};PD400,{};", k % 20 + 1, 40 * k, 40 * k);
+    let text = format!("IN;{}PU;", (0..40).map(line).collect::<String>());
     let pens = |options: &[&str]| {
-        // In an SVG each pen is one group.
-        let drawing = arranged_into("b.plt", text, "a.plt", options).0;
-        (drawing.strokes.iter().map(|stroke| stroke.pen).collect::<Vec<_>>(), drawing.travel_mm())
+        let (drawing, said) = arranged_as(&text, "a.plt", options);
+        (drawing.strokes.iter().map(|stroke| u32::from(stroke.pen)).collect::<Vec<_>>(), said)
     };
-    let (by_pen, far_mm) = pens(&["--order", "best"]);
-    assert_eq!(by_pen, [1, 1, 2, 2]);
-    assert_eq!(pens(&["--order", "none", "--merge-mm", "0.05"]).0, [1, 2, 1, 2]);
-    let (by_turns, near_mm) = pens(&["--order", "best", "--across-pens"]);
-    assert_eq!(by_turns, [1, 2, 1, 2]);
-    assert!((far_mm - 5.0).abs() < 1e-3 && (near_mm - 3.0).abs() < 1e-3, "{far_mm} {near_mm}");
+    assert_eq!(pens(&[]), ((0..40).map(|k| k % 20 + 1).collect(), String::new()));
+    assert_eq!(pens(&["--order", "fast"]).0, (0..40).map(|k| k / 2 + 1).collect::<Vec<_>>());
+}
+
+#[test]
+fn colours_without_a_pen_are_counted() {
+    let line = |k: u32| format!("<path d='M0 {k}H9' stroke='#{:06x}'/>", 0x10101 * (k % 20));
+    let lines: String = (0..40).map(line).collect();
+    let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' width='50mm' height='50mm'>{lines}</svg>");
+    let (drawing, said) = arranged_as(&svg, "a.svg", &[]);
+    assert_eq!(drawing.strokes.len(), 40);
+    let expected = "colours beyond the 16 pens: 4, with 8 shapes, which the pen of the nearest colour draws";
+    assert!(said.contains(expected), "{said}");
+    let folder = Folder::new();
+    let (from, to) = (folder.write("a.svg", svg), folder.file("b.plt"));
+    let told = run_example("convert", &[&from, &to, "--json"]).stdout;
+    let told: serde_json::Value = serde_json::from_slice(&told).unwrap();
+    assert!(told["diagnostics"][0]["text"].as_str().unwrap().starts_with(expected), "{told}");
 }
 
 #[test]
@@ -331,7 +361,14 @@ fn what_cannot_be_done_is_said_in_one_line() {
         (&["--center"], "the drawing has no page of its own: give one, as --center=A4"),
         (&["--fit", "20x20", "--margin", "10"], "0.0 x 0.0 mm are left of the page within its margins"),
         (&["--from-layer", "1"], "--from-layer: the drawing has no layer 1: it has none"),
-        (&["--from-line", "99"], "nothing is drawn"),
+        (
+            &["--from-line", "99"],
+            "--from-line 99: the file has 4 lines, and line 3 is the last one that draws",
+        ),
+        (
+            &["--from-line", "4"],
+            "--from-line 4: nothing is drawn from there on: line 3 is the last one that draws",
+        ),
         (&["--crop", "500,500,1,1"], "nothing is drawn"),
     ] {
         let said = complaint("convert", &[&[from.as_str(), &to][..], options].concat());

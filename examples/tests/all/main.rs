@@ -26,6 +26,7 @@ mod lost_ink;
 mod made_font;
 mod marks_files;
 mod max_error_command;
+mod odd_drawings;
 mod paper_option;
 #[path = "../../../plotter-motion/tests/all/papers.rs"]
 mod papers;

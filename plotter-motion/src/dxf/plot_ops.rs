@@ -187,20 +187,27 @@ impl<'d> PlotOps<'d> {
                 "an entity that lies beyond all measure is left out: check the scale of its block",
             );
         } else if !strokes.is_empty() {
-            self.select(given);
+            self.select(given, entity.line);
             self.ready.append(&mut strokes);
         }
         true
     }
 
     /// Takes the pen of an entity.
-    fn select(&mut self, given: Given) {
+    fn select(&mut self, given: Given, line: u32) {
         self.layer = given.layer;
         let name = self.drawing.layers.get(given.layer).map_or("", |layer| layer.name.as_str());
         let key = match self.options.pens {
             Pens::ByColour => PenKey::Colour(given.colour),
             Pens::ByLayer | Pens::ByLayerNumber => PenKey::Layer(given.layer),
         };
+        let numbers_pens = self.options.pens != Pens::ByLayerNumber;
+        if numbers_pens && self.pens.len() >= usize::from(u8::MAX) && !self.pens.contains_key(&key) {
+            self.count_otherwise(
+                line,
+                "a layer or a colour beyond the 255th has no pen of its own: pen 255 draws it; put several in one layer",
+            );
+        }
         let next = u8::try_from(self.pens.len() + 1).unwrap_or(u8::MAX);
         let pen = *self.pens.entry(key).or_insert_with(|| match self.options.pens {
             Pens::ByLayerNumber => number_of(name).unwrap_or(1),

@@ -66,6 +66,11 @@ impl<'b> Line<'b> {
                     return Err(Problem::NoLetter.at(block.place(word)));
                 }
                 if letters & bit != 0 {
+                    // `XNaN` lacks a number first of all. A controller has no room to tell.
+                    #[cfg(feature = "alloc")]
+                    if known == Words::Any {
+                        line.check_numbers()?;
+                    }
                     return Err(Problem::Repeated { letter: word.letter }.at(block.place(word)));
                 }
                 letters |= bit;

@@ -241,22 +241,55 @@ proptest! {
         let lift = |op: &PlotOp| [*op, PlotOp::Travel { to: op.target().unwrap() }];
         let ops: Vec<PlotOp> = ops.iter().flat_map(lift).collect();
         let made = make(&ops, planner, motion(EbbDialect::LowLevel));
+        // A motor moves x + y: √2 of what the pen does along a diagonal.
+        let planned = |on_path: f64| 2_f64.sqrt() * on_path * STEPS_PER_MM;
+        let (most_speed, most_accel) = (planned(planner.travel_speed_mm_s), planned(accel_mm_s2));
         for command in &made.commands {
             let EbbCommand::LowLevel(of) = command else { continue };
-            for motor in &of.motors {
-                let lasts_s = f64::from(ticks_of(*motor)) / 25_000.0;
-                // A motor moves x + y: √2 of what the pen does along a diagonal. A move leads from whole step
-                // to whole step, a step more in its time, and where the acceleration changes in it the motor
-                // begins or ends by up to 11 steps in its time faster.
-                let rate = f64::from(motor.rate) / 2_f64.powi(31) * 25_000.0;
-                let most = 2_f64.sqrt() * 2.0 * speed_mm_s * STEPS_PER_MM + 12.0 / lasts_s.max(0.004);
-                prop_assert!(rate <= most, "{rate} steps/s of {most}: {command}");
-                // The same of the acceleration.
-                let accel = f64::from(motor.accel).abs() / 2_f64.powi(31) * 25_000.0_f64.powi(2);
-                let most = 2_f64.sqrt() * accel_mm_s2 * STEPS_PER_MM + 12.0 / lasts_s.max(0.004).powi(2);
-                prop_assert!(accel <= most, "{accel} steps/s² of {most}: {command}");
+            let ticks = of.motors.map(ticks_of);
+            let ms = ticks[0].max(ticks[1]).div_ceil(TICKS_PER_MS);
+            for (motor, ticks) in of.motors.iter().zip(ticks) {
+                let rate = |rate: f64| rate / 2_f64.powi(31) * 25_000.0;
+                let accel = rate(f64::from(motor.accel)) * 25_000.0;
+                let beyond = Beyond::new(ms, made.most_off, accel.abs() + most_accel);
+                prop_assert!(accel.abs() <= most_accel + beyond.accel, "{accel} of {most_accel} steps/s²: {command}");
+                let begins = rate(f64::from(motor.rate));
+                let ends = begins + accel * f64::from(ticks) / 25_000.0;
+                // The rate of the first tick and of the last one are half a tick's change off the ends'.
+                let most = most_speed + beyond.speed + accel.abs() / 25_000.0;
+                prop_assert!(begins <= most && ends <= most, "{begins} to {ends} of {most} steps/s: {command}");
             }
         }
+    }
+}
+
+/// By how much a motor may be faster, and change its speed by more, than what it follows, since it is within
+/// a distance of it: E. Landau, "Einige Ungleichungen für zweimal differentiirbare Funktionen" (1913).
+///
+/// A move leads from whole step to whole step: its ends are up to a step off each. Besides that even part the
+/// motor is `most_off` less a step off at the samples, one a millisecond, and not at all at both ends: call
+/// this r, |r| ≤ R.
+struct Beyond {
+    /// Steps/s.
+    speed: f64,
+    /// Steps/s².
+    accel: f64,
+}
+
+impl Beyond {
+    /// In a move of so many milliseconds in which |r″| is at most `bend` steps/s².
+    fn new(ms: u32, most_off: f64, bend: f64) -> Self {
+        let rest = most_off - 1.0;
+        let seconds = |ms: u32| f64::from(ms) / 1_000.0;
+        // The second divided difference of r over both ends and the sample in the middle is half of a mean
+        // of r″. An acceleration is sent in whole numbers, less than one a tick² off.
+        let middle = (ms / 2).max(1);
+        let accel = 2.0 * rest / (seconds(middle) * seconds((ms - middle).max(1)))
+            + 25_000.0_f64.powi(2) / 2_f64.powi(31);
+        // r(h) = r′(0) h + r″ h²/2 at each sample, and the same from the other end.
+        let bent = |ms: u32| rest / seconds(ms) + 0.5 * bend * seconds(ms);
+        let speed = 2.0 / seconds(ms) + (1..=ms).map(bent).fold(f64::INFINITY, f64::min);
+        Self { speed, accel }
     }
 }
 

@@ -126,6 +126,11 @@ impl Route {
         self.order[next]
     }
 
+    /// The thing so many steps on, upwards.
+    pub(crate) fn ahead(&self, site: u32, steps: usize) -> u32 {
+        self.at(self.place[site as usize] as usize + steps)
+    }
+
     pub(crate) fn before(&self, reading: Reading, site: u32) -> u32 {
         self.next(reading.other(), site)
     }

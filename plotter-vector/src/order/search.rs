@@ -298,11 +298,9 @@ impl<'a> Search<'a> {
             let after = self.route.at(random.below(all));
             let moved = 1 + random.below(most.min(SHAKEN));
             let passed = 1 + random.below((all - 2 - moved).min(SHAKEN));
-            let step =
-                |from: u32, steps: usize| (0..steps).fold(from, |site, _| self.route.next(Reading::Up, site));
-            let first = step(after, 1);
-            let last = step(first, moved - 1);
-            let target = step(last, passed);
+            let first = self.route.ahead(after, 1);
+            let last = self.route.ahead(after, moved);
+            let target = self.route.ahead(after, moved + passed);
             self.looked += (moved + passed) as u64 / 4;
             let reversed = random.below(2) == 0 && turnable;
             let growth = growth_of_move(&self.route, Reading::Up, (first, last), target, reversed);

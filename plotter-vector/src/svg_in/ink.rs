@@ -7,16 +7,16 @@ use super::curve::Cubic;
 use super::cut_far;
 use super::dash::Dashes;
 use super::one_line;
+use super::pens::Pens;
 use super::region::{Keep, Region, bounds_of};
 use super::survey::without_spaces;
-use super::{DrawWhole, SvgError, SvgLayer, SvgLeftOut, SvgOptions, SvgPens};
+use super::{DrawWhole, SvgError, SvgLayer, SvgLeftOut, SvgOptions};
 use crate::{
-    ink::{MAX_PENS, PalettePen},
     picture::Rgb,
     stroke::{Curve, Drawing, PxPoint},
 };
 use plotter_motion::drawing::Stroke;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use usvg::tiny_skia_path::{Path, PathSegment, Point, Transform};
 
 /// Least opacity with which a fill hides what lies below it.
@@ -25,7 +25,7 @@ const HIDES: f32 = 0.5;
 /// A drawing in the making.
 pub(super) struct Ink<'a> {
     pub(super) drawing: Drawing,
-    pub(super) pens: Vec<PalettePen>,
+    pub(super) pens: Pens,
     pub(super) left_out: SvgLeftOut,
     /// The letters of the first text that is left out, without spaces.
     pub(super) text: Option<String>,
@@ -33,10 +33,6 @@ pub(super) struct Ink<'a> {
     options: SvgOptions,
     /// The layer of each group that is one, by its id.
     layer_of: BTreeMap<String, usize>,
-    /// Numbers of pens that the names of layers take.
-    named_pens: BTreeSet<u8>,
-    /// The layer that each pen stands for; beside `pens`.
-    pen_layers: Vec<Option<usize>>,
     /// Tells the texts of which all outlines are there.
     draw_whole: Option<&'a DrawWhole<'a>>,
     regions: Regions,
@@ -71,18 +67,12 @@ impl<'a> Ink<'a> {
         let (ids, layers): (Vec<String>, Vec<SvgLayer>) = layers.into_iter().unzip();
         Self {
             drawing,
-            pens: Vec::new(),
+            pens: Pens::new(options.pens, &layers),
             left_out: SvgLeftOut::default(),
             text: None,
             options,
             layer_of: ids.into_iter().zip(0..).collect(),
-            named_pens: layers
-                .iter()
-                .filter(|layer| !layer.is_left_out)
-                .filter_map(|layer| layer.number)
-                .collect(),
             layers,
-            pen_layers: Vec::new(),
             draw_whole,
             regions: Regions::new(options.tolerance_mm / options.mm_per_px(), options.max_vertices),
             cuts: Vec::new(),
@@ -277,10 +267,11 @@ impl<'a> Ink<'a> {
             }
         }
         let count = seen.strokes().len();
-        let starts: Vec<usize> = self.layers.iter().filter_map(|layer| layer.first_stroke).collect();
+        let mut starts: Vec<usize> = self.layers.iter().filter_map(|layer| layer.first_stroke).collect();
+        starts.sort_unstable();
         for layer in &mut self.layers {
             let Some(start) = layer.first_stroke else { continue };
-            let end = starts.iter().copied().filter(|other| *other > start).min();
+            let end = starts.get(starts.partition_point(|other| *other <= start)).copied();
             let place = |start: usize| first_strokes.get(start).copied().unwrap_or(count);
             let end = end.map_or(count, place);
             layer.first_stroke = Some(place(start)).filter(|start| *start < end);
@@ -475,53 +466,9 @@ impl<'a> Ink<'a> {
         Ok(())
     }
 
-    /// The pen of a colour or a layer; the next free one when it has none.
+    /// The pen of a colour or a layer.
     fn pen(&mut self, colour: Rgb, layer: Option<usize>) -> u8 {
-        let of_layer = layer.and_then(|layer| self.layers.get(layer));
-        let by_layers = matches!(self.options.pens, SvgPens::ByLayer | SvgPens::ByOrder);
-        let named = of_layer.and_then(|layer| layer.number).filter(|_| self.options.pens == SvgPens::ByLayer);
-        let known = match self.options.pens {
-            SvgPens::ByColour => self.pens.iter().find(|pen| pen.colour == colour),
-            SvgPens::ByLayer | SvgPens::ByOrder => match named {
-                Some(number) => self.pens.iter().find(|pen| pen.number == number),
-                None => {
-                    let found = self.pen_layers.iter().position(|known| *known == layer);
-                    found.and_then(|index| self.pens.get(index))
-                }
-            },
-            SvgPens::One => self.pens.first(),
-        };
-        if let Some(pen) = known {
-            return pen.number;
-        }
-        if self.pens.len() >= MAX_PENS {
-            return self.nearest(colour);
-        }
-        let name = if by_layers {
-            of_layer.map_or_else(String::new, |layer| layer.name.clone())
-        } else if self.options.pens == SvgPens::ByColour {
-            colour.to_string()
-        } else {
-            String::new()
-        };
-        let is_taken = |number: &u8| {
-            (self.options.pens == SvgPens::ByLayer && self.named_pens.contains(number))
-                || self.pens.iter().any(|pen| pen.number == *number)
-        };
-        let Some(number) = named.or_else(|| (1..=u8::MAX).find(|number| !is_taken(number))) else {
-            return self.nearest(colour);
-        };
-        self.pens.push(PalettePen { number, name, colour, width_mm: None });
-        self.pen_layers.push(layer);
-        number
-    }
-
-    /// When no pen is free: that of the nearest colour.
-    fn nearest(&self, colour: Rgb) -> u8 {
-        let wanted = colour.oklab();
-        let distance = |pen: &PalettePen| pen.colour.oklab().distance(wanted);
-        let nearest = self.pens.iter().min_by(|one, other| distance(one).total_cmp(&distance(other)));
-        nearest.map_or(1, |pen| pen.number)
+        self.pens.of(colour, layer.and_then(|index| Some((index, self.layers.get(index)?))))
     }
 }
 

@@ -23,6 +23,7 @@ mod mask;
 mod moves;
 mod one_line;
 mod paint;
+mod pens;
 mod region;
 mod rewrite;
 #[cfg(feature = "svg-text")]
@@ -72,13 +73,14 @@ const MAX_DEPTH_ON_CALLERS_STACK: usize = 48;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum SvgPens {
     /// Those of one colour. Pens are numbered in the order in which they draw first; when there are more than
-    /// [`MAX_PENS`](crate::ink::MAX_PENS) colours, the others are drawn by the pen of the nearest one.
+    /// [`MAX_PENS`](crate::ink::MAX_PENS) colours, the others are drawn by the pen of the nearest one, and
+    /// counted ([`SvgWithoutPen`]).
     #[default]
     ByColour,
     /// Those of one [`SvgLayer`]: the pen is the number that its name begins with. Layers without a number
     /// have the next free one each, in the order of the file, and so has what is in no layer: its pen has no
-    /// name. When there are more than [`MAX_PENS`](crate::ink::MAX_PENS), the others are drawn by the pen of
-    /// the nearest colour.
+    /// name. When there are more than 255, the others are drawn by the pen of the nearest colour, and counted
+    /// ([`SvgWithoutPen`]).
     ByLayer,
     /// Those of one layer, whatever its name: the first that draws something is pen 1.
     ByOrder,
@@ -172,6 +174,15 @@ pub struct SvgLeftOut {
     pub far: usize,
 }
 
+/// What is drawn by the pen of another colour, since all pens are taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct SvgWithoutPen {
+    /// Colours without a pen of their own; layers, where these are what pens stand for.
+    pub kinds: usize,
+    /// Shapes of these colours, or in these layers.
+    pub shapes: usize,
+}
+
 /// What the texts that are left out need. Without fonts, and without feature `svg-text`, it is not looked
 /// into which letters.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
@@ -209,6 +220,8 @@ pub struct SvgDrawing {
     /// The pens that draw something, from 1, with the colour of their first stroke. By colour, they are a
     /// [`Palette`](crate::ink::Palette).
     pub pens: Vec<PalettePen>,
+    /// What none of them is for.
+    pub without_pen: SvgWithoutPen,
     /// What is not drawn.
     pub left_out: SvgLeftOut,
     /// The fonts for the texts among it.
@@ -556,13 +569,14 @@ fn parse(
     };
     let (images, image_line) = (survey.images, survey.image_line);
     let left_out = SvgLeftOut { texts, text_line, images, image_line, filters, ..ink.left_out };
-    ink.pens.sort_by_key(|pen| pen.number);
+    let (pens, without_pen) = ink.pens.finish();
     Ok(SvgDrawing {
         drawing: ink.drawing,
         scale,
         width_mm,
         height_mm,
-        pens: ink.pens,
+        pens,
+        without_pen,
         left_out,
         missing_fonts: SvgMissingFonts::default(),
         layers: ink.layers,

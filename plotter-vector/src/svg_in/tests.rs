@@ -172,6 +172,8 @@ fn the_seventeenth_colour_is_drawn_by_the_nearest_pen() {
     let read = read(&greys);
     assert_eq!(pens_of(&read)[16..], [4, 13]);
     assert_eq!(read.pens.len(), 16);
+    // One shape of each.
+    assert_eq!(read.without_pen, SvgWithoutPen { kinds: 2, shapes: 2 });
 }
 
 #[test]
