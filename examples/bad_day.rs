@@ -1,4 +1,4 @@
-//! What the firmwares do when something goes wrong.
+//! Faults, and how the firmwares handle them.
 //!
 //! The gantry's firmware runs in the emulator and is sent a line of 40 mm. Its watchdog bites half way, its
 //! emergency stop is pressed when it is switched on, or its receiver loses a byte. After each, look at what

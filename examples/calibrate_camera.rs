@@ -1,4 +1,4 @@
-//! What a camera's lens does to straight lines, from the picture of a printed grid.
+//! Measures the distortion of a camera's lens from the picture of a printed grid.
 //!
 //! Print the grid (`--print-grid`), lay it under the camera, take a picture, and give it. The correction goes
 //! into a file; the figures say how far the lens moved the grid's crossings, and how far they are off after

@@ -142,7 +142,7 @@ fn lines(condition: &Condition) -> Vec<Vec<PxPoint>> {
     vec![ring, line(&[(30.3, 165.4), (270.6, 178.2)]), line(&[(310.2, 280.4), (365.3, 70.8), (430.6, 276.9)])]
 }
 
-/// What came of a run, or the worst of several.
+/// Result of a run, or the worst of several.
 #[derive(Clone, Debug)]
 struct Outcome {
     complete: bool,

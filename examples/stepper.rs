@@ -1,4 +1,4 @@
-//! How long a drawing takes on a plotter with stepper motors, and what its motors do on the way.
+//! Plots a drawing on a simulated plotter with stepper motors: time, speed, and every step of its motors.
 //!
 //! A file in HPGL, G-code, SVG, a cutter's language or the thesis' text is planned with look-ahead and turned
 //! into timed steps, as the controller does it; then the steps alone are walked through. From them come the

@@ -1,4 +1,4 @@
-//! What the targets share.
+//! Code that the fuzz targets share.
 
 use image::{DynamicImage, ImageFormat};
 use std::io::Cursor;

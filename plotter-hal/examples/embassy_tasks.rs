@@ -1,10 +1,10 @@
 //! The drivers in asynchronous tasks, as with Embassy: four tasks of a pen plotter, none of which ever
 //! blocks.
 //!
-//! The controller draws two lines of G-code that come over the serial line. One byte of the second line comes
-//! broken, so that it is refused and the host sends it again; then somebody presses the emergency stop while
-//! the pen is down. Look at the servo: it is lowered slowly, the motors wait for it, and the stop lifts it
-//! within a frame.
+//! The controller draws two lines of G-code that come over the serial line. One byte of the second line
+//! arrives damaged, so that it is refused and the host sends it again; then somebody presses the emergency
+//! stop while the pen is down. Look at the pen: it is lowered slowly, the motors wait for it, and the stop
+//! lifts it within one period of the servo's pulse (20 ms).
 //!
 //! ```text
 //! cargo run -p plotter-hal --example embassy_tasks
@@ -12,8 +12,8 @@
 //!
 //! On a board the tasks stay as they are: `clock.until(at)` is `Timer::at(at)`, the cell with the controller
 //! a `Mutex<ThreadModeRawMutex, RefCell<_>>`, and `#[embassy_executor::task]` and the spawner take the place
-//! of [`run`]. There is a clock here that jumps from one appointment to the next, so this runs in no time,
-//! and the same each time.
+//! of [`run`]. Here the hardware is simulated, in the module `desk`, and the clock jumps to the next time
+//! that a task waits for, so this runs at once and prints always the same.
 
 mod desk;
 
@@ -38,20 +38,22 @@ type Switches = LimitSwitchGroup<Switch, Switch, Switch, Switch>;
 const MS: Duration = Duration::from_millis(1);
 const US: Duration = Duration::from_micros(1);
 
-/// What the host sends, and when, ms. The `?` is a byte that comes broken.
-const HOST: [(u64, &str); 4] = [
+/// Lines that the host sends, and when, ms. The `?` is a byte that arrives damaged.
+const HOST_SENDS: [(u64, &str); 4] = [
     (40, "G21 G90 M5\n"),
     (60, "G0 X5 Y5\nM3\nG1 X15 Y5 F1200\n"),
     (1400, "G1 X1? Y15 F1200\n"),
     (1500, "G1 X15 Y15 F1200\n"),
 ];
-/// When the emergency stop is pressed and let go, ms. Its contact bounces.
+/// Times at which the emergency stop is pressed and released, ms. Its contact bounces.
 const STOP_MS: [(u64, u64); 3] = [(1800, 1802), (1804, 1805), (1807, 2100)];
-const END: Duration = Duration::from_millis(2400);
+/// Length of the story.
+const RUN_FOR: Duration = Duration::from_millis(2400);
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let time = Time::default();
+    let time = Timer::default();
     let clock = time.clock.clone();
+    // The servo's pulse: a period of 20,000 us, its width in whole microseconds.
     let pwm = Pwm { clock: clock.clone(), name: "servo", full: 20_000, duty: None, least_change: 1 };
     let pen = PenServo::new(pwm, PenServoSettings { lowering_deg_s: 600.0, ..PenServoSettings::default() })?;
     let settings = StepperPlotterSettings {
@@ -68,7 +70,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let gate = SafetyGate::new(switches.limits(), button.is_pressed());
     let plotter = RefCell::new(StepperPlotter::new(settings, gate)?);
 
-    let line = SerialLine::new(Port::new(&clock, &HOST));
+    let line = SerialLine::new(Port::new(&clock, &HOST_SENDS));
     let (mut motors, steps) = desk::motors();
     motors.start(clock.now())?;
     run(
@@ -81,13 +83,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         ],
     );
     let at = plotter.borrow().position_mm();
-    let [x, y] = steps.map(|line| line.rises());
+    let [x, y] = steps.map(|pin| pin.rises());
     clock.say("at", &format!("({:.2}, {:.2}) mm after {x} and {y} steps", at.x, at.y));
     Ok(())
 }
 
-/// Bytes to the controller, and its answers back.
-async fn serial(time: &Time, plotter: &Controller, mut line: SerialLine<Port>) {
+/// Hands bytes to the controller and sends its answers.
+async fn serial(time: &Timer, plotter: &Controller, mut line: SerialLine<Port>) {
     loop {
         let now = time.clock.now();
         while let Some(received) = line.receive() {
@@ -103,22 +105,23 @@ async fn serial(time: &Time, plotter: &Controller, mut line: SerialLine<Port>) {
     }
 }
 
-/// Steps at their times.
-async fn motion(time: &Time, plotter: &Controller, mut motors: Motors) {
+/// Makes the controller's steps at their times.
+async fn motion(time: &Timer, plotter: &Controller, mut motors: Motors) {
     let mut moving = false;
     loop {
         let now = time.clock.now();
         let mut steps = 0;
-        let mut made = motors.tick(now);
+        let mut outcome = motors.tick(now);
         // A step for which the drivers are not ready stays due.
         while let Some(step) = plotter.borrow_mut().poll(now, motors.drivers()) {
-            made = made.and(motors.step(step.pulse, now));
+            outcome = outcome.and(motors.step(step.pulse, now));
             steps += 1;
         }
-        if let Err(error) = made {
+        if let Err(error) = outcome {
             time.clock.say("motors", &error.to_string());
         }
         let due = plotter.borrow().due();
+        // They stand if nothing is due within 20 ms.
         if moving != (steps > 0) && (steps > 0 || due.is_none_or(|due| due > now + MS * 20)) {
             moving = steps > 0;
             let at = plotter.borrow().position_mm();
@@ -130,8 +133,8 @@ async fn motion(time: &Time, plotter: &Controller, mut motors: Motors) {
     }
 }
 
-/// The pen where the controller wants it.
-async fn servo(time: &Time, plotter: &Controller, mut pen: PenServo<Pwm>) {
+/// Turns the pen's servo to where the controller wants it.
+async fn servo(time: &Timer, plotter: &Controller, mut pen: PenServo<Pwm>) {
     let mut settled = false;
     loop {
         let now = time.clock.now();
@@ -146,15 +149,15 @@ async fn servo(time: &Time, plotter: &Controller, mut pen: PenServo<Pwm>) {
     }
 }
 
-/// Emergency stop and limit switches.
-async fn safety(time: &Time, plotter: &Controller, mut button: EstopInput<Switch>, mut switches: Switches) {
+/// Tells the controller of emergency stop and limit switches, every millisecond.
+async fn safety(time: &Timer, plotter: &Controller, mut button: EstopInput<Switch>, mut switches: Switches) {
     loop {
-        look(&time.clock, &mut plotter.borrow_mut(), &mut button, &mut switches);
+        check_safety_inputs(&time.clock, &mut plotter.borrow_mut(), &mut button, &mut switches);
         time.until(time.clock.now() + MS).await;
     }
 }
 
-fn look(
+fn check_safety_inputs(
     clock: &Clock,
     plotter: &mut StepperPlotter,
     button: &mut EstopInput<Switch>,
@@ -166,7 +169,7 @@ fn look(
     match change {
         Ok(Some(EstopChange::FreeSinceStart)) => {
             clock.say("button", "free since the start: ready");
-            plotter.restart(now);
+            plotter.restart(now); // it has refused everything so far, for the button counted as pressed
         }
         Ok(Some(change)) => clock.say("button", &format!("{change:?}")),
         Ok(None) => {}
@@ -183,14 +186,14 @@ fn look(
     }
 }
 
-/// A clock, and the next time at which a task wants to be called.
+/// A clock, and the next time that a task waits for.
 #[derive(Debug, Default)]
-struct Time {
+struct Timer {
     clock: Clock,
     next: Cell<Option<Duration>>,
 }
 
-impl Time {
+impl Timer {
     async fn until(&self, at: Duration) {
         core::future::poll_fn(|_| {
             if self.clock.now() >= at {
@@ -203,10 +206,10 @@ impl Time {
     }
 }
 
-/// Calls all tasks at the times that they have asked for, until [`END`].
-fn run(time: &Time, mut tasks: [Pin<&mut dyn Future<Output = ()>>; 4]) {
+/// Calls all tasks at the times that they wait for, until [`RUN_FOR`] is over.
+fn run(time: &Timer, mut tasks: [Pin<&mut dyn Future<Output = ()>>; 4]) {
     let mut context = Context::from_waker(Waker::noop());
-    while time.clock.now() < END {
+    while time.clock.now() < RUN_FOR {
         time.next.set(None);
         for task in &mut tasks {
             let _ = task.as_mut().poll(&mut context);

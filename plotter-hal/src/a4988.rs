@@ -109,7 +109,7 @@ enum Part {
     First,
     /// The second of its axis.
     Second,
-    /// That of a third axis.
+    /// The driver of a third axis.
     Z,
 }
 

@@ -62,7 +62,7 @@ pub(crate) struct Contact<Pin> {
 /// What a look at a contact told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Seen {
-    /// What its pin shows now.
+    /// Level of the pin now.
     pub(crate) shows_press: bool,
     /// What is believed.
     pub(crate) is_pressed: bool,
@@ -144,7 +144,7 @@ impl Debounce {
         PinState::from(is_high) == self.settings.pressed_at
     }
 
-    /// What it has shown last. One that could not be read has shown a press.
+    /// State of the last reading; a pin that could not be read counts as pressed.
     #[cfg(feature = "async")]
     const fn showed_press(&self) -> bool {
         self.pressed != self.differs_since.is_some()

@@ -58,7 +58,7 @@ pub struct EstopInput<Pin> {
     unpressed: bool,
 }
 
-/// What became of the button.
+/// Changes of the button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]

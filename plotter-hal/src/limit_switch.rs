@@ -264,7 +264,7 @@ crate::which_pin::which_pin! {
 }
 
 impl<XMin, XMax, YMin, YMax> GroupError<XMin, XMax, YMin, YMax> {
-    /// Of which axis the switch is.
+    /// Axis of the switch.
     pub const fn axis(&self) -> Axis {
         match self {
             Self::XMin(_) | Self::XMax(_) => Axis::X,

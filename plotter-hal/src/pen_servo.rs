@@ -24,7 +24,7 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::pwm::{self, SetDutyCycle};
 use plotter_motion::Machine;
 
-/// What a pulse does to a servo, as measured.
+/// A measured point of a servo: pulse width and angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ServoPoint {
     /// The angle, degrees.
@@ -299,7 +299,7 @@ impl<Pwm: SetDutyCycle> PenServo<Pwm> {
         Self { pwm, settings, target_deg: up_deg, at_deg: up_deg, state: State::Unset }
     }
 
-    /// What one step of the PWM turns the servo by, degrees: angles are rounded to the nearest.
+    /// Resolution of the angle, degrees per step of the PWM: angles are rounded to the nearest.
     pub fn resolution_deg(&self) -> f32 {
         let [a, b] = self.settings.calibration;
         #[expect(clippy::cast_precision_loss, reason = "at most 40000")]
@@ -487,7 +487,7 @@ pub enum SettingsError {
     Calibration {
         /// Their distance, degrees.
         apart_deg: f32,
-        /// That of their pulses, us.
+        /// Difference of their pulses, us.
         apart_us: f32,
     },
     /// So many us from one pulse to the next.
@@ -557,7 +557,7 @@ impl core::error::Error for SettingsError {}
 /// Settings that cannot be right, and the PWM that came with them.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Refused<Pwm> {
-    /// What is wrong with them.
+    /// The fault.
     pub why: SettingsError,
     /// The PWM, untouched.
     pub pwm: Pwm,

@@ -61,7 +61,7 @@ const MOST_TRIES: u32 = 1_000_000;
 pub enum Register {
     /// General configuration.
     Gconf = 0x00,
-    /// What has happened: reset, error, undervoltage.
+    /// Events since the last reading: reset, error, undervoltage.
     Gstat = 0x01,
     /// How many writes have been taken, of 256.
     Ifcnt = 0x02,
@@ -166,7 +166,7 @@ pub enum Chopper {
     SpreadCycle,
 }
 
-/// What a motor gets.
+/// Settings of a motor: current, microsteps, chopper.
 ///
 /// ```
 /// # use plotter_hal::tmc2209::Settings;
@@ -281,7 +281,7 @@ pub enum SettingsError {
     Microsteps(u16),
     /// The sense resistors do not let that much through.
     Current {
-        /// What was asked for, mA.
+        /// The current asked for, mA.
         current_ma: u16,
         /// With these, mOhm.
         sense_mohm: u16,

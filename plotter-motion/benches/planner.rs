@@ -1,4 +1,4 @@
-//! How fast tool paths are planned and stepped: segments and step events a second, on one core.
+//! Speed of planning and stepping tool paths: segments and step events per second, on one core.
 //!
 //! ```text
 //! cargo bench -p plotter-motion --bench planner

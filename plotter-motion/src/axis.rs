@@ -11,7 +11,7 @@ pub enum Axis {
     Y,
 }
 
-/// Which way a motor turns.
+/// Direction of a motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]

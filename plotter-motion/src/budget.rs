@@ -8,7 +8,7 @@
 
 use core::fmt;
 
-/// What the parts of an error cost, and how much of each is of use. All lengths in mm, none negative.
+/// Costs of the parts of an error, and how much of each is useful. All lengths in mm, none negative.
 ///
 /// Control is taken as `standing + moving k²`: what is there however slowly the machine moves (counts or
 /// steps, play, friction), and what its speed adds. A motion made slower as a whole by the factor k has k
@@ -24,7 +24,7 @@ pub struct BudgetLimits {
     pub blend_most_mm: f64,
     /// Error of control in slow motion, mm.
     pub standing_mm: f64,
-    /// What it grows by at the machine's own speed and acceleration, mm.
+    /// Growth of the error at the machine's own speed and acceleration, mm.
     pub moving_mm: f64,
     /// Least share of the machine's speed that anyone wants to wait for, above 0 and up to 1.
     pub least_speed_share: f64,
@@ -76,21 +76,21 @@ impl fmt::Display for BudgetPart {
 pub enum BudgetError {
     /// It is less than what all parts need at the least.
     TooSmall {
-        /// What was asked, mm.
+        /// Greatest error asked for, mm.
         asked_mm: f64,
         /// The part that needs most of it.
         limiting: BudgetPart,
-        /// What that part needs, mm.
+        /// Least error that this part needs, mm.
         needs_mm: f64,
         /// Smallest error that can be promised, mm.
         smallest_mm: f64,
     },
-    /// What was asked is no length.
+    /// The greatest error asked for is not a length.
     NoLength {
-        /// What was asked, mm.
+        /// Greatest error asked for, mm.
         asked_mm: f64,
     },
-    /// What a part costs is not a number, negative, or contradicts itself.
+    /// A cost is not a number, is negative, or contradicts another.
     Limits {
         /// The part.
         part: BudgetPart,

@@ -169,12 +169,12 @@ impl Vec2Single {
         Self { x: -self.y, y: self.x }
     }
 
-    /// One way after the other.
+    /// Sum of two vectors.
     pub(crate) fn plus(self, other: Self) -> Self {
         Self { x: self.x + other.x, y: self.y + other.y }
     }
 
-    /// So many times the way.
+    /// The vector times a number.
     pub(crate) fn times(self, factor: f32) -> Self {
         Self { x: self.x * factor, y: self.y * factor }
     }

@@ -124,9 +124,9 @@ impl Homed {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct HomingStep {
-    /// Which motor.
+    /// The motor.
     pub axis: Axis,
-    /// Which way.
+    /// Direction of the motor.
     pub direction: Direction,
     /// Pulses a second: the step takes 1/`rate_hz` s.
     pub rate_hz: u32,
@@ -357,7 +357,7 @@ impl Homing {
         Self { x, y, progress: HomingProgress::START }
     }
 
-    /// What is wanted, with the limit switches as they are now: to be called before every step.
+    /// Next motion, for the present state of the limit switches; to be called before every step.
     pub fn update(&mut self, limits: LimitSwitches) -> HomingStatus {
         self.progress.update([&self.x, &self.y], limits)
     }

@@ -51,9 +51,9 @@ impl DrawingMark {
 /// Where a drawing was left that went over the reliable link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ResumePoint {
-    /// What the machine said of itself when the drawing was begun.
+    /// Report of the machine when the drawing was begun.
     pub resume: Resume,
-    /// Which drawing it was, if the log says.
+    /// Mark of the drawing, if the log has one.
     pub drawing: Option<DrawingMark>,
 }
 

@@ -1,4 +1,4 @@
-//! [`Port`]: a serial port of this computer, with a machine on it.
+//! [`Port`]: a serial port of this computer; [`find`] chooses one by its name or its device.
 
 use core::fmt;
 use core::time::Duration;
@@ -12,7 +12,7 @@ use std::time::Instant;
 /// # use core::time::Duration;
 /// # use plotter_replay::serial::Port;
 /// let mut port = Port::open("/dev/ttyUSB0", 256_000)?;
-/// port.send(&[3, 9, 9, 2, 0, 5, 5, 9, 3, 1])?;
+/// port.send(&[3, 9, 9, 2, 0, 5, 5, 9, 3, 1])?; // a target in ten digits, counts of x and y: see `digits`
 /// let mut answer = [0; 64];
 /// let bytes = port.receive(&mut answer, Duration::from_millis(10))?;
 /// println!("{:?}", &answer[..bytes]);
@@ -29,38 +29,38 @@ impl fmt::Debug for Port {
     }
 }
 
-/// What is wrong with a port.
+/// An error of a serial port.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PortError {
-    /// Its name.
+    /// Name of the port.
     pub port: String,
-    /// What it is.
+    /// What went wrong.
     pub kind: PortErrorKind,
 }
 
-/// What is wrong with a port.
+/// Kinds of errors of a serial port.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PortErrorKind {
-    /// There is no such port; those that there are.
-    NotThere {
-        /// Their names.
-        others: Vec<String>,
+    /// No port has this name.
+    NotFound {
+        /// Names of the ports that exist.
+        existing: Vec<String>,
     },
-    /// None was named, and there is not just one.
-    WhichOne {
-        /// Those that there are.
-        others: Vec<String>,
+    /// Several ports may be meant, or none exists.
+    Ambiguous {
+        /// Names of the ports that may be meant.
+        candidates: Vec<String>,
     },
-    /// Another program has it.
+    /// Another program uses the port.
     Busy,
-    /// This user may not open it.
-    NotAllowed,
-    /// It has gone away.
+    /// This user may not open the port.
+    PermissionDenied,
+    /// The port has disappeared, as an unplugged one does.
     Gone,
-    /// It takes no more bytes.
+    /// The port has taken no bytes for five seconds.
     Stuck,
-    /// Something else, in the system's words.
+    /// Another error, as the operating system describes it.
     Other(String),
 }
 
@@ -68,20 +68,20 @@ impl fmt::Display for PortError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: ", self.port)?;
         match &self.kind {
-            PortErrorKind::NotThere { others } if others.is_empty() => {
+            PortErrorKind::NotFound { existing } if existing.is_empty() => {
                 f.write_str("there is no such serial port, and no other: is the machine plugged in and on?")
             }
-            PortErrorKind::NotThere { others } => {
-                write!(f, "there is no such serial port; there are {}", others.join(", "))
+            PortErrorKind::NotFound { existing } => {
+                write!(f, "there is no such serial port; there are {}", existing.join(", "))
             }
-            PortErrorKind::WhichOne { others } if others.is_empty() => {
+            PortErrorKind::Ambiguous { candidates } if candidates.is_empty() => {
                 f.write_str("no serial port was found: is the machine plugged in and on?")
             }
-            PortErrorKind::WhichOne { others } => {
-                write!(f, "which serial port? There are {}", others.join(", "))
+            PortErrorKind::Ambiguous { candidates } => {
+                write!(f, "which serial port? There are {}", candidates.join(", "))
             }
             PortErrorKind::Busy => f.write_str("another program uses this serial port: close it first"),
-            PortErrorKind::NotAllowed => f.write_str(
+            PortErrorKind::PermissionDenied => f.write_str(
                 "this user may not open the serial port: on Linux, become a member of its group (`ls -l` names it, \
                  often dialout) and log in again",
             ),
@@ -94,89 +94,100 @@ impl fmt::Display for PortError {
 
 impl core::error::Error for PortError {}
 
-/// The serial port that is meant: `auto` is the only one on USB, else the only one at all; a name that no
-/// port has may be a part of its name or of what the device on USB calls itself, if only one has it.
+/// Name of the serial port that `wanted` means:
+///
+/// - `auto`: the only port on USB, or if none is, the only port;
+/// - the name of a port, or a path that exists: that;
+/// - anything else: the port whose name or USB description contains the text, in upper or lower case. If no
+///   port does, `wanted` itself, so that [`Port::open`] says what is wrong with it.
 ///
 /// # Errors
 ///
-/// [`PortErrorKind::WhichOne`] if there are several, or none.
+/// [`PortErrorKind::Ambiguous`] if several ports fit, or if `auto` finds none.
 pub fn find(wanted: &str) -> Result<String, PortError> {
     let ports = serialport::available_ports().unwrap_or_default();
     choose(wanted, &ports.into_iter().map(known).collect::<Vec<_>>())
 }
 
-/// A port: its name, what its device says of itself, whether it is on USB.
-type Known = (String, String, bool);
+/// A port as the system lists it.
+#[derive(Clone, Debug)]
+struct KnownPort {
+    name: String,
+    /// Maker, product and serial number of the device on USB; empty elsewhere.
+    description: String,
+    is_usb: bool,
+}
 
-fn known(port: serialport::SerialPortInfo) -> Known {
+fn known(port: serialport::SerialPortInfo) -> KnownPort {
     match port.port_type {
         serialport::SerialPortType::UsbPort(usb) => {
-            let words =
+            let description =
                 [usb.manufacturer, usb.product, usb.serial_number].map(Option::unwrap_or_default).join(" ");
-            (port.port_name, words, true)
+            KnownPort { name: port.port_name, description, is_usb: true }
         }
-        _ => (port.port_name, String::new(), false),
+        _ => KnownPort { name: port.port_name, description: String::new(), is_usb: false },
     }
 }
 
-fn choose(wanted: &str, ports: &[Known]) -> Result<String, PortError> {
-    let names = |of: &[&Known]| of.iter().map(|(name, ..)| name.clone()).collect::<Vec<_>>();
-    let which = |others: Vec<String>| {
-        Err(PortError { port: wanted.to_owned(), kind: PortErrorKind::WhichOne { others } })
+fn choose(wanted: &str, ports: &[KnownPort]) -> Result<String, PortError> {
+    // The only one of several ports, or an error that names them.
+    let only = |candidates: Vec<&KnownPort>| match candidates.as_slice() {
+        [port] => Ok(port.name.clone()),
+        several => {
+            let candidates = several.iter().map(|port| port.name.clone()).collect();
+            Err(PortError { port: wanted.to_owned(), kind: PortErrorKind::Ambiguous { candidates } })
+        }
     };
     if wanted.eq_ignore_ascii_case("auto") {
-        let on_usb: Vec<&Known> = ports.iter().filter(|(.., usb)| *usb).collect();
-        let all: Vec<&Known> = ports.iter().collect();
-        return match (on_usb.as_slice(), all.as_slice()) {
-            ([(name, ..)], _) | ([], [(name, ..)]) => Ok(name.clone()),
-            ([], all) => which(names(all)),
-            (several, _) => which(names(several)),
-        };
+        let on_usb: Vec<&KnownPort> = ports.iter().filter(|port| port.is_usb).collect();
+        return only(if on_usb.is_empty() { ports.iter().collect() } else { on_usb });
     }
-    if ports.iter().any(|(name, ..)| name == wanted) || std::path::Path::new(wanted).exists() {
+    if ports.iter().any(|port| port.name == wanted) || std::path::Path::new(wanted).exists() {
         return Ok(wanted.to_owned());
     }
     let lower = wanted.to_ascii_lowercase();
     let has = |text: &str| text.to_ascii_lowercase().contains(&lower);
-    let alike: Vec<&Known> = ports.iter().filter(|(name, words, _)| has(name) || has(words)).collect();
-    match alike.as_slice() {
-        // Opening it says what is wrong.
-        [] => Ok(wanted.to_owned()),
-        [(name, ..)] => Ok(name.clone()),
-        several => which(names(several)),
-    }
+    let alike: Vec<_> = ports.iter().filter(|port| has(&port.name) || has(&port.description)).collect();
+    if alike.is_empty() { Ok(wanted.to_owned()) } else { only(alike) }
 }
 
-/// How long a byte may wait to be sent.
-const SEND_WITHIN: Duration = Duration::from_secs(5);
+/// How long a byte may wait to be sent: a machine that stops the line for longer hangs. It is also the
+/// time-out of reading between calls, which none relies on.
+const SEND_TIMEOUT: Duration = Duration::from_secs(5);
+/// Shortest time-out that is asked for: the library counts whole milliseconds.
+const LEAST_TIMEOUT: Duration = Duration::from_millis(1);
+/// Time-out of both ends of a relay: how soon it notices that it shall end.
+const RELAY_TIMEOUT: Duration = Duration::from_millis(200);
 
 impl Port {
-    /// Opens the port `name` (`/dev/ttyUSB0`, `COM3`, …) at `baud` bits a second, and forgets what came
-    /// before.
+    /// Opens the port `name` (`/dev/ttyUSB0`, `COM3`, …) at `baud` bits a second, and discards input
+    /// received before.
     ///
     /// # Errors
     ///
     /// [`PortError`] if that cannot be done.
     pub fn open(name: &str, baud: u32) -> Result<Self, PortError> {
-        let inner = serialport::new(name, baud).timeout(SEND_WITHIN).open().map_err(|error| {
+        let inner = serialport::new(name, baud).timeout(SEND_TIMEOUT).open().map_err(|error| {
+            // `serialport` 4 reports a locked port as `NoDevice`: only its text tells it, or that the path
+            // exists.
             let kind = match error.kind {
                 ErrorKind::NoDevice if error.description.contains("lock") => PortErrorKind::Busy,
                 ErrorKind::NoDevice if std::path::Path::new(name).exists() => PortErrorKind::Busy,
-                ErrorKind::NoDevice | ErrorKind::Io(io::ErrorKind::NotFound) => PortErrorKind::NotThere {
-                    others: serialport::available_ports()
+                ErrorKind::NoDevice | ErrorKind::Io(io::ErrorKind::NotFound) => PortErrorKind::NotFound {
+                    existing: serialport::available_ports()
                         .unwrap_or_default()
                         .into_iter()
                         .map(|port| port.port_name)
                         .collect(),
                 },
-                ErrorKind::Io(io::ErrorKind::PermissionDenied) => PortErrorKind::NotAllowed,
+                ErrorKind::Io(io::ErrorKind::PermissionDenied) => PortErrorKind::PermissionDenied,
                 ErrorKind::Io(io::ErrorKind::ResourceBusy) => PortErrorKind::Busy,
                 _ => PortErrorKind::Other(error.description),
             };
             PortError { port: name.to_owned(), kind }
         })?;
         let port = Self { name: name.to_owned(), inner };
-        port.inner.clear(ClearBuffer::Input).map_err(|error| port.other(&error.into()))?;
+        port.inner.clear(ClearBuffer::Input).map_err(|error| port.io_error(&error.into()))?;
         Ok(port)
     }
 
@@ -184,21 +195,21 @@ impl Port {
     ///
     /// # Errors
     ///
-    /// [`PortError`] if the system has none.
+    /// [`PortError`] if the system gives none.
     pub fn try_clone(&self) -> Result<Self, PortError> {
-        let inner = self.inner.try_clone().map_err(|error| self.other(&error.into()))?;
+        let inner = self.inner.try_clone().map_err(|error| self.io_error(&error.into()))?;
         Ok(Self { name: self.name.clone(), inner })
     }
 
-    /// The names of this computer's serial ports.
+    /// Names of this computer's serial ports.
     #[must_use]
     pub fn names() -> Vec<String> {
         let ports = serialport::available_ports().unwrap_or_default();
         ports.into_iter().map(|port| port.port_name).collect()
     }
 
-    /// A pseudo terminal: its machine's end, and the port at the other end, which any program may open by its
-    /// name.
+    /// A pseudo terminal: (the machine's end, the host's end). Any program may open the host's end by its
+    /// name, which [`name`](Self::name) of both ends returns.
     ///
     /// # Errors
     ///
@@ -224,42 +235,40 @@ impl Port {
         let sent = self.inner.write_all(bytes).and_then(|()| self.inner.flush());
         sent.map_err(|error| match error.kind() {
             io::ErrorKind::TimedOut => self.error(PortErrorKind::Stuck),
-            _ => self.other(&error),
+            _ => self.io_error(&error),
         })
     }
 
-    /// Sends as many of `bytes` as the port takes at once, which may be none; says how many.
+    /// Sends as many of `bytes` as the port takes at once, which may be none; returns how many.
     ///
     /// # Errors
     ///
     /// [`PortError`] if the port is gone.
     pub fn offer(&mut self, bytes: &[u8]) -> Result<usize, PortError> {
-        self.inner.set_timeout(Duration::from_millis(1)).map_err(|error| self.other(&error.into()))?;
+        self.inner.set_timeout(LEAST_TIMEOUT).map_err(|error| self.io_error(&error.into()))?;
         let result = match self.inner.write(bytes) {
             Ok(count) => Ok(count),
             Err(error) if matches!(error.kind(), io::ErrorKind::TimedOut | io::ErrorKind::Interrupted) => {
                 Ok(0)
             }
-            Err(error) => Err(self.other(&error)),
+            Err(error) => Err(self.io_error(&error)),
         };
-        let restored = self.inner.set_timeout(SEND_WITHIN).map_err(|error| self.other(&error.into()));
+        let restored = self.inner.set_timeout(SEND_TIMEOUT).map_err(|error| self.io_error(&error.into()));
         restored.and(result)
     }
 
-    /// Waits at most `wait` for bytes; says how many came, which may be none.
+    /// Waits at most `wait` for bytes; returns how many came, which may be none.
     ///
     /// # Errors
     ///
     /// [`PortError`] if the port is gone.
     pub fn receive(&mut self, bytes: &mut [u8], wait: Duration) -> Result<usize, PortError> {
-        // Time-outs have a millisecond at least, which is much for who does not want to wait.
+        // The library waits at least a millisecond: too long for a caller that does not want to wait.
         if wait.is_zero() && self.inner.bytes_to_read().is_ok_and(|waiting| waiting == 0) {
             return Ok(0);
         }
         let until = Instant::now() + wait;
-        self.inner
-            .set_timeout(wait.max(Duration::from_millis(1)))
-            .map_err(|error| self.other(&error.into()))?;
+        self.inner.set_timeout(wait.max(LEAST_TIMEOUT)).map_err(|error| self.io_error(&error.into()))?;
         let result = loop {
             match self.inner.read(bytes) {
                 Ok(0) if !bytes.is_empty() => break Err(self.error(PortErrorKind::Gone)),
@@ -267,22 +276,21 @@ impl Port {
                 Err(error) if error.kind() == io::ErrorKind::TimedOut => break Ok(0),
                 Err(error) if error.kind() == io::ErrorKind::Interrupted && Instant::now() < until => {}
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => break Ok(0),
-                Err(error) => break Err(self.other(&error)),
+                Err(error) => break Err(self.io_error(&error)),
             }
         };
-        let restored = self.inner.set_timeout(SEND_WITHIN).map_err(|error| self.other(&error.into()));
+        let restored = self.inner.set_timeout(SEND_TIMEOUT).map_err(|error| self.io_error(&error.into()));
         restored.and(result)
     }
 
-    /// Both directions of it for a [`relay`](crate::record::relay), with time-outs of a fifth of a second.
+    /// Both directions of the port for a [`relay`](crate::record::relay), with time-outs of 200 ms.
     ///
     /// # Errors
     ///
     /// [`PortError`] if the system gives no second handle.
     pub fn into_relay_end(mut self) -> Result<crate::record::RelayEnd, PortError> {
-        let prepared =
-            self.inner.set_timeout(Duration::from_millis(200)).and_then(|()| self.inner.try_clone());
-        let writer = prepared.map_err(|error| self.other(&error.into()))?;
+        let prepared = self.inner.set_timeout(RELAY_TIMEOUT).and_then(|()| self.inner.try_clone());
+        let writer = prepared.map_err(|error| self.io_error(&error.into()))?;
         Ok(crate::record::RelayEnd {
             name: self.name,
             reader: Box::new(self.inner),
@@ -290,7 +298,7 @@ impl Port {
         })
     }
 
-    /// Its name.
+    /// Name of the port.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
@@ -300,7 +308,7 @@ impl Port {
         PortError { port: self.name.clone(), kind }
     }
 
-    fn other(&self, error: &io::Error) -> PortError {
+    fn io_error(&self, error: &io::Error) -> PortError {
         self.error(match error.kind() {
             io::ErrorKind::BrokenPipe | io::ErrorKind::NotFound | io::ErrorKind::UnexpectedEof => {
                 PortErrorKind::Gone
@@ -316,7 +324,11 @@ mod tests {
 
     #[test]
     fn a_port_is_found_by_what_is_known_of_it() {
-        let port = |name: &str, words: &str, usb| (name.to_owned(), words.to_owned(), usb);
+        let port = |name: &str, description: &str, is_usb| KnownPort {
+            name: name.to_owned(),
+            description: description.to_owned(),
+            is_usb,
+        };
         let ports = [
             port("/dev/ttyS0", "", false),
             port("/dev/ttyUSB0", "FTDI FT232R A50285BI", true),
@@ -339,7 +351,7 @@ mod tests {
     #[test]
     fn a_port_that_is_not_there_is_said_to_be_so() {
         let error = Port::open("/dev/no-such-plotter", 9_600).unwrap_err();
-        assert!(matches!(error.kind, PortErrorKind::NotThere { .. }), "{error:?}");
+        assert!(matches!(error.kind, PortErrorKind::NotFound { .. }), "{error:?}");
         assert!(
             error.to_string().starts_with("/dev/no-such-plotter: there is no such serial port"),
             "{error}"

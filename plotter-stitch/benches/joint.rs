@@ -1,4 +1,4 @@
-//! How long it takes to tell how a sheet lies: from 16 crossings, and by the published method.
+//! Time to compute how a sheet lies: from 16 crossings, and by the published method.
 //!
 //! ```text
 //! cargo bench -p plotter-stitch --bench joint

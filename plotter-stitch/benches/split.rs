@@ -1,4 +1,4 @@
-//! How fast drawings are divided into frames: segments a second, on one core.
+//! Speed of dividing drawings into frames: segments per second, on one core.
 //!
 //! ```text
 //! cargo bench -p plotter-stitch --bench split

@@ -1,4 +1,4 @@
-//! How fast a scan is read by rows: an A4 sheet at 600 dots per inch, 4960 x 7016 px, 35 million of them.
+//! Speed of reading a scan by rows: an A4 sheet at 600 dots per inch, 4960 x 7016 px, 35 million of them.
 //!
 //! `cargo bench -p plotter-vector --bench rows`; the throughput is in pixels, so Gelem/s are thousand
 //! megapixels.

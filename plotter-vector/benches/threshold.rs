@@ -1,8 +1,9 @@
-//! Megapixels a second of each stage from grey levels to clean ink, on a sheet A4 at 150, 300 and 600 dots
-//! per inch.
+//! Speed of each stage from grey levels to clean ink, on an A4 sheet at 150, 300 and 600 dots per inch.
+//!
+//! Criterion counts elements; one element is one pixel, so `Melem/s` are megapixels per second.
 //!
 //!     cargo bench -p plotter-vector --bench threshold
-#![allow(clippy::unwrap_used, reason = "a failure shows, and levels are made to fit")]
+#![allow(clippy::unwrap_used, reason = "a benchmark may panic, and the picture has width * height levels")]
 
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use plotter_vector::{
@@ -13,13 +14,18 @@ use plotter_vector::{
 use std::hint::black_box;
 use std::time::Duration;
 
+/// Least difference between the mean levels of ink and paper that Otsu's method accepts; the sheet has 160.
+const LEAST_CONTRAST: u8 = 24;
+
 /// Lines in all directions, 4 px wide, on paper with noise.
 fn sheet(width: u32, height: u32) -> Gray {
     let level = |i: u32| {
         let (x, y) = (i % width, i / width);
+        // An integer hash of the pixel's number: noise that is the same in each run.
         let mut noise = i.wrapping_mul(0x9e37_79b9);
         noise = (noise ^ noise >> 15).wrapping_mul(0x2c1b_3c6d);
         let paper = 225 + (noise >> 28) as u8;
+        // Their distances are primes, so that lines of two directions do not meet in a regular pattern.
         let line = x % 331 < 4 || y % 313 < 4 || (x + y) % 397 < 4 || (3 * x + 1000 * y / 577) % 1201 < 6;
         if line { paper - 160 } else { paper }
     };
@@ -39,17 +45,18 @@ fn stages(criterion: &mut Criterion) {
         stage("histogram", &mut || {
             let mut histogram = Histogram::default();
             histogram.push(black_box(gray.pixels()));
-            black_box(histogram.otsu(24));
+            black_box(histogram.otsu(LEAST_CONTRAST));
         });
         for method in [ThresholdMethod::Otsu, ThresholdMethod::Adaptive] {
             let threshold = Threshold { method, ..Threshold::default() };
-            stage(&format!("{method}, whole"), &mut || drop(black_box(threshold.apply(&gray))));
+            stage(&format!("{method}, whole picture"), &mut || drop(black_box(threshold.apply(&gray))));
         }
         let (ink, _) = Threshold::default().apply(&gray);
-        let pen_px = pen_width_px(&ink).unwrap_or(0);
-        stage("width of the pen", &mut || {
+        let pen_px = pen_width_px(&ink).unwrap();
+        stage("pen width", &mut || {
             black_box(pen_width_px(&ink));
         });
+        // It changes its input, so each run has a copy, made outside the time that is measured.
         group.bench_function(BenchmarkId::new("despeckle", dpi), |bencher| {
             let run = |mut ink| despeckle(&mut ink, smallest_mark_px(pen_px));
             bencher.iter_batched(|| ink.clone(), run, BatchSize::LargeInput);

@@ -1,4 +1,4 @@
-//! [`DisjointSets`]: things that belong together.
+//! [`DisjointSets`]: sets of things that belong together (union-find).
 
 /// Trees over numbered things: those that belong together share a root (B. A. Galler and M. J. Fischer, "An
 /// improved equivalence algorithm", 1964).
@@ -6,18 +6,18 @@
 pub(crate) struct DisjointSets(Vec<usize>);
 
 impl DisjointSets {
-    /// So many things, each by itself.
+    /// `things` things, each in a set of its own.
     pub(crate) fn new(things: usize) -> Self {
         Self((0..things).collect())
     }
 
-    /// One more thing, by itself: its number.
+    /// Adds a thing in a set of its own; returns its number.
     pub(crate) fn push(&mut self) -> usize {
         self.0.push(self.0.len());
         self.0.len() - 1
     }
 
-    /// So many things, each by itself, in place of all.
+    /// Begins again with `things` things, each in a set of its own.
     pub(crate) fn begin_again(&mut self, things: usize) {
         self.0.clear();
         self.0.extend(0..things);

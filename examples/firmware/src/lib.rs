@@ -1,4 +1,4 @@
-//! What the firmwares share: the machine's numbers, the board, the stepper plotter's drivers.
+//! Code that the firmwares share: the machine's constants, the board, the stepper plotter's drivers.
 #![no_std]
 
 use small_runtime as _;

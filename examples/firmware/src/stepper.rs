@@ -1,4 +1,4 @@
-//! What both firmwares of the stepper plotter have in common: the motors' drivers, the pen, the times.
+//! Code that both firmwares of the stepper plotter share: the motors' drivers, the pen, the times.
 
 use crate::board::plotter::SERVO_STEPS;
 use crate::board::{StepperPins, Wire};

@@ -1,4 +1,4 @@
-//! An STM32F4 by embassy-stm32.
+//! The drivers of `plotter-hal` with the types of `embassy-stm32`, for an STM32F4. Compiled and never run.
 
 use core::time::Duration;
 use embassy_stm32::exti::ExtiInput;
@@ -13,7 +13,7 @@ use plotter_hal::plotter_motion::{Axis, config::Decoding};
 use plotter_hal::serial_line::{Fault, NbPort, Received};
 use plotter_hal::{A4988, EstopInput, HBridge, Quadrature, SerialRx, SerialTx, StepperAxes, SwitchSettings};
 
-/// The task that receives.
+/// A task that hands each received byte to `take`.
 pub async fn receive(rx: BufferedUartRx<'static>, mut take: impl FnMut(Received)) {
     let mut rx = SerialRx::new(rx);
     while let Some(received) = rx.received().await {
@@ -21,7 +21,7 @@ pub async fn receive(rx: BufferedUartRx<'static>, mut take: impl FnMut(Received)
     }
 }
 
-/// The same by DMA into a ring.
+/// The same by DMA into a ring buffer.
 pub async fn receive_by_dma(rx: RingBufferedUartRx<'static>, mut take: impl FnMut(Received)) {
     let mut rx = SerialRx::new(rx);
     while let Some(received) = rx.received().await {
@@ -29,19 +29,22 @@ pub async fn receive_by_dma(rx: RingBufferedUartRx<'static>, mut take: impl FnMu
     }
 }
 
-/// The task that sends.
-pub async fn send(tx: BufferedUartTx<'static>, next: impl FnMut() -> Option<u8>) -> Result<(), Fault> {
+/// A task that sends the bytes that `next_byte` gives.
+pub async fn send(tx: BufferedUartTx<'static>, next_byte: impl FnMut() -> Option<u8>) -> Result<(), Fault> {
     let mut tx: SerialTx<_> = SerialTx::new(tx);
-    tx.sent(next).await
+    tx.sent(next_byte).await
 }
 
-/// The same by DMA: not to be dropped before its end.
-pub async fn send_by_dma(tx: UartTx<'static, Async>, next: impl FnMut() -> Option<u8>) -> Result<(), Fault> {
+/// The same by DMA. The future must run to its end: a dropped one loses bytes.
+pub async fn send_by_dma(
+    tx: UartTx<'static, Async>,
+    next_byte: impl FnMut() -> Option<u8>,
+) -> Result<(), Fault> {
     let mut tx: SerialTx<_> = SerialTx::new(tx);
-    tx.sent(next).await
+    tx.sent(next_byte).await
 }
 
-/// Both halves without waiting: what is sent goes into the port's own buffer.
+/// Receives and sends without waiting: bytes to send go into the port's own buffer.
 pub fn poll(
     rx: BufferedUartRx<'static>,
     tx: BufferedUartTx<'static>,
@@ -50,8 +53,8 @@ pub fn poll(
     (SerialRx::new(rx).receive(), tx.write_queued())
 }
 
-/// A port without a buffer.
-pub fn words(
+/// Receives and sends by a port without a buffer.
+pub fn unbuffered(
     rx: UartRx<'static, Blocking>,
     tx: UartTx<'static, Blocking>,
 ) -> (Option<Received>, Result<(), Fault>) {
@@ -59,16 +62,16 @@ pub fn words(
     (SerialRx::new(NbPort::new(rx)).receive(), tx.write_queued())
 }
 
-/// Stepper motors.
-pub fn steppers(x: [Output<'static>; 2], y: [Output<'static>; 2], enable: Output<'static>) -> bool {
+/// Starts two step/dir drivers; returns whether all pins obeyed.
+pub fn start_steppers(x: [Output<'static>; 2], y: [Output<'static>; 2], enable: Output<'static>) -> bool {
     let ([x_step, x_dir], [y_step, y_dir]) = (x, y);
     let x = A4988::new(Axis::X, x_step, x_dir, Timing::TMC2209).with_enable(enable);
     let y = A4988::new(Axis::Y, y_step, y_dir, Timing::TMC2209);
     StepperAxes::new(x, y).start(Duration::ZERO).is_ok()
 }
 
-/// A DC motor with its encoder.
-pub fn motor<T: GeneralInstance4Channel>(
+/// Starts a DC motor and reads its encoder; returns whether all pins obeyed.
+pub fn start_dc_motor<T: GeneralInstance4Channel>(
     enable: SimplePwmChannel<'static, T>,
     [a, b]: [Output<'static>; 2],
     phases: [Input<'static>; 2],
@@ -78,8 +81,8 @@ pub fn motor<T: GeneralInstance4Channel>(
     HBridge::new(Axis::X, enable, a, b).start().is_ok() && encoder.poll().is_ok()
 }
 
-/// Waits for a button on a pin with an interrupt; the clock and the delay are the executor's.
-pub async fn button(
+/// Waits for an emergency stop button on a pin with an interrupt. Clock and delay are the executor's.
+pub async fn wait_for_estop(
     button: ExtiInput<'static, Async>,
     clock: impl Fn() -> Duration,
     delay: &mut impl DelayNs,

@@ -1,7 +1,8 @@
-//! The drivers of `plotter-hal` on the types of chips' crates: that they fit is shown by compiling it.
+//! The drivers of `plotter-hal` with the types of five crates for microcontrollers. That they compile shows
+//! that the types fit; nothing here is run.
 //!
-//! Each module takes what its crate gives, and hands it to the drivers as a firmware does. `check` compiles
-//! each for its processor.
+//! Each module takes pins, ports and timers of one crate and hands them to the drivers as a firmware does.
+//! The script `check` compiles each module for its processor.
 #![no_std]
 
 #[cfg(feature = "embassy-nrf")]

@@ -1,8 +1,9 @@
-//! An RP2040 by rp2040-hal.
+//! The drivers of `plotter-hal` with the types of `rp2040-hal`, for the RP2040.
+//!
+//! It is compiled and never run: it shows which types fit, and how a call looks.
 
 use core::time::Duration;
 use plotter_hal::a4988::Timing;
-use plotter_hal::embedded_hal::delay::DelayNs;
 use plotter_hal::plotter_motion::{Axis, config::Decoding};
 use plotter_hal::serial_line::{Fault, NbPort, Received};
 use plotter_hal::{
@@ -17,54 +18,55 @@ use rp2040_hal::uart::{Enabled, Reader, UartDevice, UartPeripheral, ValidUartPin
 type Output = Pin<DynPinId, FunctionSioOutput, PullDown>;
 type Input = Pin<DynPinId, FunctionSioInput, PullUp>;
 
-/// A port as a whole.
-pub fn line<D: UartDevice, P: ValidUartPinout<D>>(
+/// Receives a byte and sends what `next_byte` gives, by a port that is not split.
+pub fn whole_port<D: UartDevice, P: ValidUartPinout<D>>(
     uart: UartPeripheral<Enabled, D, P>,
-    next: impl FnMut() -> Option<u8>,
+    next_byte: impl FnMut() -> Option<u8>,
 ) -> (Option<Received>, Result<(), Fault>) {
     let mut line = SerialLine::new(uart);
-    (line.receive(), line.send(next))
+    (line.receive(), line.send(next_byte))
 }
 
-/// Its halves.
-pub fn halves<D: UartDevice, P: ValidUartPinout<D>>(
+/// The same by a port that is split into receiver and transmitter, with a queue of 8 bytes for what is sent.
+pub fn split_port<D: UartDevice, P: ValidUartPinout<D>>(
     rx: Reader<D, P>,
     tx: Writer<D, P>,
-    next: impl FnMut() -> Option<u8>,
+    next_byte: impl FnMut() -> Option<u8>,
 ) -> (Option<Received>, Result<(), Fault>) {
     let mut tx: SerialTx<_, 8> = SerialTx::new(tx);
-    (SerialRx::new(rx).receive(), tx.send(next))
+    (SerialRx::new(rx).receive(), tx.send(next_byte))
 }
 
-/// Its halves, so that the kinds of faults are told apart.
-pub fn words<D: UartDevice, P: ValidUartPinout<D>>(
+/// The same through [`NbPort`], which tells framing, parity and overrun faults apart.
+pub fn split_port_with_fault_kinds<D: UartDevice, P: ValidUartPinout<D>>(
     rx: Reader<D, P>,
     tx: Writer<D, P>,
-    next: impl FnMut() -> Option<u8>,
+    next_byte: impl FnMut() -> Option<u8>,
 ) -> (Option<Received>, Result<(), Fault>) {
     let mut tx: SerialTx<_, 8> = SerialTx::new(NbPort::new(tx));
-    (SerialRx::new(NbPort::new(rx)).receive(), tx.send(next))
+    (SerialRx::new(NbPort::new(rx)).receive(), tx.send(next_byte))
 }
 
-/// A TMC2209 on a port of its own.
-pub fn chip<D: UartDevice, P: ValidUartPinout<D>>(
+/// Configures a TMC2209 that has a serial port to itself.
+pub fn configure_tmc2209<D: UartDevice, P: ValidUartPinout<D>>(
     uart: UartPeripheral<Enabled, D, P>,
     mut timer: Timer,
 ) -> Result<(), tmc2209::Error> {
-    Tmc2209::new(uart, 0).configure(&tmc2209::Settings::default(), &mut timer)
+    const ADDRESS: u8 = 0; // pins MS1 and MS2 low
+    Tmc2209::new(uart, ADDRESS).configure(&tmc2209::Settings::default(), &mut timer)
 }
 
-/// Stepper motors.
-pub fn steppers(x: [Output; 2], y: [Output; 2], enable: Output, mut timer: Timer) -> bool {
+/// Starts two step/dir drivers; returns whether all pins obeyed.
+pub fn start_steppers(x: [Output; 2], y: [Output; 2], enable: Output, mut timer: Timer) -> bool {
     let ([x_step, x_dir], [y_step, y_dir]) = (x, y);
+    // A TMC2209 is stepped like an A4988, with times of its own.
     let x = A4988::new(Axis::X, x_step, x_dir, Timing::TMC2209).with_enable(enable);
     let y = A4988::new(Axis::Y, y_step, y_dir, Timing::TMC2209);
-    timer.delay_us(1);
     StepperAxes::new(x, y).start_blocking(&mut timer).is_ok()
 }
 
-/// A DC motor with its encoder.
-pub fn motor<S: AnySlice, C: ChannelId>(
+/// Starts a DC motor and reads its encoder; returns whether all pins obeyed.
+pub fn start_dc_motor<S: AnySlice, C: ChannelId>(
     enable: Channel<S, C>,
     [a, b]: [Output; 2],
     [phase_a, phase_b]: [Input; 2],
@@ -76,7 +78,7 @@ where
     HBridge::new(Axis::X, enable, a, b).start().is_ok() && encoder.poll().is_ok()
 }
 
-/// A button.
-pub fn button(button: Input) -> bool {
+/// Reads an emergency stop button; returns whether its pin could be read.
+pub fn read_estop(button: Input) -> bool {
     EstopInput::new(button, SwitchSettings::default()).tick(Duration::ZERO).is_ok()
 }

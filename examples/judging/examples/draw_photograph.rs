@@ -1,9 +1,9 @@
-//! Draws `docs/pictures/photograph.png`: a drawing on a table as a telephone sees it, and the strokes that
-//! ours finds on its sheet.
+//! Draws `docs/pictures/photograph.png`: a simulated photograph of a drawing on a table, and the strokes that
+//! our vectorizer finds on its sheet.
 //!
-//! Left the photograph, made by the corpus of degraded drawings: perspective, shade, blur and noise. Right
-//! what `trace --paper auto` draws of it, each stroke in a colour of its own. Look at the figures as well:
-//! how many strokes were drawn, and how many are found.
+//! The photograph, on the left, is from the corpus of degraded drawings: perspective, shade, blur and noise.
+//! On the right is what `trace --paper auto` draws of it, each stroke in a colour of its own. Look at the
+//! figures as well: how many strokes were drawn, and how many are found.
 //!
 //! ```text
 //! cargo run --release -p plotter-judging --example draw_photograph               # rewrites that picture
@@ -20,14 +20,19 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use tiny_skia::{Color, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Stroke, Transform};
 
-/// Of the corpus: a page of cartoons.
+/// Seed of the corpus.
 const SEED: u64 = 1;
+/// Number of the drawing in the corpus: a page of cartoons.
 const NUMBER: u32 = 4;
-/// Height of both panels, and the way between them, px.
+/// Number of the drawing on the back of the sheet, which a photograph in perspective does not show.
+const BACK_NUMBER: u32 = NUMBER + 101;
+/// Height of both panels, px.
 const HEIGHT_PX: u32 = 520;
+/// Distance between the panels, px.
 const GAP_PX: u32 = 24;
-/// Width of a stroke as it is shown, px.
+/// Width of a stroke in the right panel, px.
 const PEN_PX: f32 = 1.6;
+/// Colours of the strokes, one after the other.
 const COLOURS: [[u8; 3]; 6] =
     [[20, 90, 200], [205, 30, 30], [20, 130, 60], [170, 80, 170], [200, 110, 0], [0, 140, 150]];
 
@@ -45,9 +50,9 @@ fn main() -> ExitCode {
 }
 
 fn draw(file: Option<PathBuf>) -> Result<(), String> {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/pictures/photograph.png");
-    let file = file.unwrap_or_else(beside);
-    let drawn = Drawn::new(drawing(SEED, NUMBER), &drawing(SEED, NUMBER + 101));
+    let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/pictures/photograph.png");
+    let file = file.unwrap_or_else(default);
+    let drawn = Drawn::new(drawing(SEED, NUMBER), &drawing(SEED, BACK_NUMBER));
     let photograph = drawn
         .degraded(Kind::Perspective, Strength::Middle, SEED, NUMBER)
         .map_err(|error| format!("the photograph: {error}"))?;
@@ -55,36 +60,36 @@ fn draw(file: Option<PathBuf>) -> Result<(), String> {
     let quad = SheetQuad::find(&gray).map_err(|error| error.to_string())?;
     let sheet = quad
         .straightened(quad.proportion(gray.width(), gray.height()))
-        .ok_or("a sheet that is seen from its edge")?
+        .ok_or("the sheet is seen from its edge")?
         .gray(&gray);
     let vectorizer = Vectorizer { prefer: Prefer::Strokes, ..Vectorizer::default() };
     let found = vectorizer.vectorize(&sheet).map_err(|error| error.to_string())?.drawing;
 
-    let seen = image::load_from_memory(&photograph.file).map_err(|error| error.to_string())?;
-    let seen = seen.resize(u32::MAX, HEIGHT_PX, imageops::FilterType::Triangle).into_rgb8();
+    let photo = image::load_from_memory(&photograph.file).map_err(|error| error.to_string())?;
+    let photo = photo.resize(u32::MAX, HEIGHT_PX, imageops::FilterType::Triangle).into_rgb8();
     let strokes = strokes(&found)?;
     let mut both =
-        RgbImage::from_pixel(seen.width() + GAP_PX + strokes.width(), HEIGHT_PX, image::Rgb([u8::MAX; 3]));
-    imageops::replace(&mut both, &seen, 0, 0);
-    imageops::replace(&mut both, &strokes, i64::from(seen.width() + GAP_PX), 0);
+        RgbImage::from_pixel(photo.width() + GAP_PX + strokes.width(), HEIGHT_PX, image::Rgb([u8::MAX; 3]));
+    imageops::replace(&mut both, &photo, 0, 0);
+    imageops::replace(&mut both, &strokes, i64::from(photo.width() + GAP_PX), 0);
     both.save(&file).map_err(|error| format!("{}: {error}", file.display()))?;
     let (true_strokes, strokes) = (photograph.truth.polylines.len(), found.strokes().len());
     print(&format!("{true_strokes} strokes were drawn, {strokes} are found\n"))
 }
 
-/// The strokes on a white sheet with a rim.
+/// The right panel: the strokes on a white sheet with a grey edge.
 fn strokes(drawing: &Drawing) -> Result<RgbImage, String> {
     let scale = f64::from(HEIGHT_PX) / f64::from(drawing.height_px().max(1));
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a panel's width")]
     let width = (f64::from(drawing.width_px()) * scale) as u32;
-    let mut panel = Pixmap::new(width, HEIGHT_PX).ok_or("a sheet without pixels")?;
+    let mut panel = Pixmap::new(width, HEIGHT_PX).ok_or("the panel has no pixels")?;
     panel.fill(Color::WHITE);
     for (stroke, [red, green, blue]) in drawing.strokes().zip(COLOURS.into_iter().cycle()) {
         let mut path = PathBuilder::new();
-        for (place, at) in stroke.iter().enumerate() {
+        for (index, at) in stroke.iter().enumerate() {
             #[expect(clippy::cast_possible_truncation, reason = "to be drawn on a small picture")]
             let (x, y) = ((at.x * scale) as f32, (at.y * scale) as f32);
-            if place == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
+            if index == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
         }
         let mut paint = Paint { anti_alias: true, ..Paint::default() };
         paint.set_color_rgba8(red, green, blue, 255);
@@ -99,8 +104,8 @@ fn strokes(drawing: &Drawing) -> Result<RgbImage, String> {
         }
     }
     let pixels: Vec<u8> = panel.pixels().iter().flat_map(|at| [at.red(), at.green(), at.blue()]).collect();
-    let mut panel = RgbImage::from_raw(width, HEIGHT_PX, pixels).ok_or("a panel of another size")?;
-    // The sheet's edge.
+    let mut panel = RgbImage::from_raw(width, HEIGHT_PX, pixels).ok_or("the panel has another size")?;
+    // The sheet's grey edge.
     for (x, y) in (0..width).flat_map(|x| [(x, 0), (x, HEIGHT_PX - 1)]) {
         panel.put_pixel(x, y, image::Rgb([190; 3]));
     }

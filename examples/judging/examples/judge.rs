@@ -1,4 +1,4 @@
-//! How well a vectorization meets what was drawn.
+//! Measures how well a vectorization matches the drawn lines.
 //!
 //! `draw_corpus` writes pictures with the strokes that they were drawn from. Trace one of them, with ours or
 //! any other program, and this says how far the result and those strokes are from each other: on the average,
@@ -20,7 +20,7 @@
 use clap::Parser;
 use plotter_examples::shared::{at, is_standard, print, read_file, run, write_output};
 use plotter_judging::corpus::Truth;
-use plotter_judging::{JudgedDrawing, Judgement, StraightenedPaper, judged_corpus};
+use plotter_judging::{JudgedDrawing, Judgement, StraightenedPaper, judge_corpus};
 use plotter_vector::{Bitmap, Vectorizer, decode};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -64,7 +64,7 @@ fn main() -> ExitCode {
 fn judge(arguments: &Arguments) -> Result<(), String> {
     let judged = match (&arguments.drawing, &arguments.truth) {
         (Some(drawing), Some(truth)) => vec![judged(drawing, truth, arguments)?],
-        _ => judged_corpus()?.into_iter().map(|(truth, judgement)| (truth.name, judgement)).collect(),
+        _ => judge_corpus()?.into_iter().map(|(truth, judgement)| (truth.name, judgement)).collect(),
     };
     if let Some(file) = &arguments.report {
         let figures: Vec<_> =

@@ -1,7 +1,8 @@
-//! How well strokes come onto their pens: sheets of up to eight pens that cross, as eight kinds of pictures.
+//! Measures how well strokes are assigned to their pens, on sheets of up to eight pens whose strokes cross,
+//! in eight kinds of pictures.
 //!
-//! Each sheet is drawn, shown, traced with the pens that are found, and compared with what was drawn. Look at
-//! the share on the wrong pen, and at the least recall: of a pen that is lost it is 0.
+//! Each sheet is drawn, shown as a picture, traced with the pens that are found, and compared with the drawn
+//! strokes. Look at the share on the wrong pen, and at the least recall, which is 0 for a pen that is lost.
 //!
 //! ```text
 //! cargo run --release --example judge_pens
@@ -17,25 +18,28 @@ use std::fs::create_dir_all;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Judges how strokes come onto their pens.
+/// Width of the strokes in the SVG, px.
+const PEN_PX: f64 = 1.5;
+
+/// Measures how well strokes are assigned to their pens.
 #[derive(Debug, Parser)]
 #[command(
     after_help = "Example:\n  judge_pens --seeds 3,4 --sheets 5 --kinds photo,squared --each --out DIR"
 )]
 struct Arguments {
-    /// Other strokes, pens and noise for each number
+    /// Seeds: strokes, pens and noise are others for each
     #[arg(long, value_delimiter = ',', default_value = "1")]
     seeds: Vec<u64>,
-    /// How many sheets of each seed
+    /// Number of sheets of each seed
     #[arg(long, value_name = "N", default_value_t = 10)]
     sheets: u32,
     /// Kinds of pictures, separated by commas [default: all]
     #[arg(long, value_enum, value_delimiter = ',')]
     kinds: Vec<PenPicture>,
-    /// Prints a line for each sheet too
+    /// Prints a line for each sheet as well
     #[arg(long)]
     each: bool,
-    /// Writes the pictures, and what was made of them as SVG, into this folder
+    /// Writes the pictures, and the strokes found in them as SVG, into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -72,6 +76,7 @@ fn judge(arguments: &Arguments) -> Result<(), String> {
     Ok(())
 }
 
+/// Traces one sheet and compares it with what was drawn; writes picture and strokes into `out`.
 fn figures(
     (seed, number): (u64, u32),
     kind: PenPicture,
@@ -86,7 +91,7 @@ fn figures(
     let drawing = &found.traced.drawing;
     if let Some(out) = out {
         let mut svg = String::new();
-        svg_in_colour(drawing, &found.palette, None, 1.5, &mut svg).map_err(|error| error.to_string())?;
+        svg_in_colour(drawing, &found.palette, None, PEN_PX, &mut svg).map_err(|error| error.to_string())?;
         write_output(&out.join(format!("{name}.{}", kind.extension())), file)?;
         write_output(&out.join(format!("{name}.svg")), svg)?;
     }

@@ -1,4 +1,4 @@
-//! [`judged_corpus`]: what ours makes of every picture of the corpus.
+//! [`judge_corpus`]: traces every picture of the corpus, and compares it with the truth.
 
 use crate::corpus::{Truth, all};
 use crate::{JudgedDrawing, Judgement};
@@ -7,13 +7,14 @@ use plotter_vector::{Vectorizer, decode};
 use rayon::prelude::*;
 use std::io::Cursor;
 
-/// Draws the corpus, vectorizes each picture with the default settings, in colour where it has several, and
-/// compares with what was drawn. The greatest distance of the ink is measured on lines 1 px wide.
+/// Draws the corpus, vectorizes each picture with the default settings, in colour where it has several
+/// colours, and compares it with the drawn lines. The greatest distance of the ink is measured on lines 1 px
+/// wide.
 ///
 /// # Errors
 ///
 /// The picture that could not be vectorized, and why.
-pub fn judged_corpus() -> Result<Vec<(Truth, Judgement)>, String> {
+pub fn judge_corpus() -> Result<Vec<(Truth, Judgement)>, String> {
     all()
         .into_par_iter()
         .map(|picture| {

@@ -1,4 +1,4 @@
-//! [`JudgedDrawing`]: a vector result on the picture that it was made from.
+//! [`JudgedDrawing`]: a vectorization by any program, read from SVG or HPGL, in the picture's pixels.
 
 use crate::StraightenedPaper;
 use crate::corpus::View;
@@ -10,10 +10,10 @@ use plotter_vector::{
     read_svg,
 };
 
-/// Farthest that curves may be from their chords, px.
+/// Greatest distance of curves from their chords, px.
 const CHORD_PX: f64 = 0.1;
 
-/// From a place that is counted from a pixel's centre to [`PxPoint`], px.
+/// Offset from coordinates counted from a pixel's centre to [`PxPoint`], px.
 pub(crate) const CENTRE_PX: f64 = 0.5;
 
 /// What an SVG can be read to, mm.
@@ -25,7 +25,7 @@ const MM_PER_PX: core::ops::RangeInclusive<f64> = 0.001..=100.0;
 /// Strokes of straight lines in a picture's pixels, and the pens that they are drawn by.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JudgedDrawing {
-    /// The strokes; what was a curve within 0.1 px.
+    /// The strokes; curves as lines within 0.1 px.
     pub drawing: Drawing,
     /// The pens with their colours.
     pub pens: Vec<PalettePen>,

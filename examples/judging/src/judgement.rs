@@ -2,7 +2,7 @@
 
 use crate::corpus::Truth;
 use crate::judged_drawing::CENTRE_PX;
-use crate::{LinePiece, NearLines};
+use crate::{LinePiece, NearestLineIndex};
 use plotter_vector::{Bitmap, Drawing, PxPoint, Rgb, ink::PalettePen};
 use serde::Serialize;
 
@@ -22,7 +22,7 @@ const MEANT_PX: f64 = 3.0;
 /// Longest lines that are compared, px: ten times those of a dense A0 sheet at 600 dots per inch.
 const MOST_PX: f64 = 1e8;
 
-/// Figures of a drawing beside the truth.
+/// Figures of a drawing, compared with the truth.
 ///
 /// The truth *T* and the drawing *D* are cut into pieces of at most ½ px, those of a segment equal. A piece
 /// stands for its length *l* with its middle *p*, and *d*(*p*, *X*) is the distance of that from the nearest
@@ -99,8 +99,8 @@ impl Judgement {
         if longest_px > MOST_PX || longest_px.is_nan() {
             return Err(format!("{longest_px:.0} px of lines are more than {MOST_PX:.0}: give a part of it"));
         }
-        let drawn = NearLines::new(drawing.strokes());
-        let meant = NearLines::new(true_lines.iter().map(Vec::as_slice));
+        let drawn = NearestLineIndex::new(drawing.strokes());
+        let meant = NearestLineIndex::new(true_lines.iter().map(Vec::as_slice));
         let (of_drawing, of_truth) = (measured(&drawn, &meant), measured(&meant, &drawn));
         if of_drawing.is_empty() || of_truth.is_empty() {
             return Err("it draws nothing: there is nothing to compare".into());
@@ -169,7 +169,7 @@ struct Measured {
     nearest: usize,
 }
 
-fn measured(lines: &NearLines, others: &NearLines) -> Vec<Measured> {
+fn measured(lines: &NearestLineIndex, others: &NearestLineIndex) -> Vec<Measured> {
     let near = |piece: LinePiece| {
         let (far_px, nearest) = others.nearest(piece.middle)?;
         Some(Measured { piece, far_px, nearest })

@@ -50,7 +50,7 @@ pub struct CompareCommand {
 }
 
 impl CompareCommand {
-    /// Runs it; what the exit code means stands in its help.
+    /// Runs the command; its help has the table of exit codes.
     #[must_use]
     pub fn run(self) -> ExitCode {
         self.run_with(Vec::new())

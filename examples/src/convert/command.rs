@@ -49,37 +49,37 @@ pub struct ConvertCommand {
     input: PathBuf,
     /// Drawing to write; - is the standard output
     pub(super) output: PathBuf,
-    /// What the drawing is written in [default: told by its contents]
+    /// Language of the drawing [default: found from its contents]
     #[arg(long, value_enum, value_name = "L")]
     pub(super) from: Option<Language>,
-    /// What is written [default: told by the suffix]
+    /// Language to write [default: found from the suffix]
     #[arg(long, value_enum, value_name = "L")]
     pub(super) to: Option<Language>,
-    /// Farthest that chords may be from arcs and curves that the target does not know, mm
+    /// Greatest distance of chords from arcs and curves that the target does not know, mm
     #[arg(long, value_name = "T", default_value = "0.01", value_parser = positive, allow_negative_numbers = true)]
     pub(super) tolerance_mm: f64,
-    /// How G-code that is read lifts its pen [default: told by its contents]
+    /// How G-code to read lifts its pen [default: found from its contents]
     #[arg(long, value_enum, value_name = "C")]
     convention: Option<Convention>,
-    /// How G-code that is written lifts its pen
+    /// How G-code to write lifts its pen
     #[arg(long, value_enum, default_value = "servo")]
     pub(super) gcode_pen: GcodePen,
     // The pen of G-code in other words: where G-code is written, instead of --gcode-pen; and where it is
     // read, if it has them
     #[command(flatten)]
     pub(super) pen_lines: PenLines,
-    /// Encoder counts to the millimetre in the thesis' text
+    /// Encoder counts per millimetre in the thesis' text
     #[arg(long, value_name = "N", default_value = "40", value_parser = positive, allow_negative_numbers = true)]
     pub(super) counts_per_mm: f64,
-    /// Size of a step in CAMM-GL and GP-GL, or of the unit of a DXF, mm: 25.4 for inches [default: 0.025,
-    /// 0.1, Silhouette's 0.05; what the DXF says, else 1]
+    /// Size of a step in CAMM-GL and GP-GL, or of the unit of a DXF, mm: 25.4 for inches [default: 0.025
+    /// for CAMM-GL, 0.1 for GP-GL, 0.05 for Silhouette; the unit in the DXF, else 1]
     #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
     step_mm: Option<f64>,
     #[command(flatten)]
     svg_reading: SvgReading,
     #[command(flatten)]
     arrangement: Arrangement,
-    /// Ends at the first error, with exit status 1; notices pass
+    /// Ends at the first error, with exit status 1; notices do not count
     #[arg(long)]
     strict: bool,
     #[command(flatten)]
@@ -126,7 +126,7 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 impl ConvertCommand {
-    /// Runs it; what the exit code means stands in its help.
+    /// Runs the command; its help has the table of exit codes.
     #[must_use]
     pub fn run(self) -> ExitCode {
         let arguments = self;

@@ -1,4 +1,4 @@
-//! What is written, in any language.
+//! Writes a drawing in any of the languages.
 
 use super::command::{ConvertCommand, GcodePen};
 use crate::drawings::{Diagnostic, Diagnostics, Language, Severity, SvgText};

@@ -1,5 +1,4 @@
-//! [`Arrangement`]: what is done with a drawing between reading and writing it, as options of the command
-//! line.
+//! [`Arrangement`]: options of the command line that change a drawing between reading and writing it.
 
 use crate::drawings::drawing_file::{Diagnostic, Ops, Severity};
 use clap::ValueEnum;
@@ -9,62 +8,63 @@ use plotter_vector::{Order, order::OrderEffort};
 use std::rc::Rc;
 use std::str::FromStr;
 
-/// The options for what is done with a drawing. Without any of them it streams through.
+/// Options that change a drawing. Without any of them its operations stream through.
 ///
-/// They work in this order: what is left out before a line or a layer; mirrored, turned, scaled, put on the
-/// page; hatched; hidden; cropped; drawn once; with arcs; simplified; put in order.
+/// They are applied in this order: begin at a line or layer; mirror, turn, scale, place on the page; hatch;
+/// hide; crop; remove doubles; fit arcs; simplify; order.
 #[derive(Clone, Debug, Default, PartialEq, clap::Args)]
-#[command(next_help_heading = "What is done with the drawing")]
+#[command(next_help_heading = "Changes to the drawing")]
 pub struct Arrangement {
-    /// Makes it so many times as large, about the origin
+    /// Scales it by a factor, about the origin
     #[arg(long, value_name = "F", value_parser = factor, allow_negative_numbers = true, conflicts_with = "fit")]
     pub scale: Option<f64>,
-    /// Makes it as large as a page allows, and puts it in its middle: A4, letter, 210x297 (mm)
+    /// Scales it to fit a page and centres it there: A4, letter, 210x297 (mm)
     #[arg(long, value_name = "PAGE")]
     pub fit: Option<Page>,
-    /// Puts it in the middle of a page: of its own, or as --center=A4
+    /// Centres it on a page: its own, or as --center=A4
     #[arg(long, value_name = "PAGE", num_args = 0..=1, require_equals = true, default_missing_value = "own", conflicts_with = "fit")]
     pub center: Option<Page>,
-    /// What stays free along each side of the page, mm
+    /// Margin along each side of the page, mm
     #[arg(long, value_name = "MM", value_parser = not_negative, allow_negative_numbers = true)]
     pub margin: Option<f64>,
-    /// Takes the page with its longer side across
+    /// Takes the page in landscape format
     #[arg(long)]
     pub landscape: bool,
-    /// Turns it about its middle, counter-clockwise, degrees
+    /// Rotates it about its middle, counter-clockwise, degrees
     #[arg(long, value_name = "DEG", value_parser = number, allow_negative_numbers = true)]
     pub rotate: Option<f64>,
-    /// Turns left into right (x) or above into below (y)
+    /// Mirrors it: left becomes right (x), or top becomes bottom (y)
     #[arg(long, value_enum, value_name = "AXIS")]
     pub mirror: Option<Mirror>,
-    /// Cuts off what lies outside of a rectangle: x and y of its lower left corner, width and height, mm; or
-    /// of a polygon: x and y of three corners or more, as 10,10,60,10,35,60. One that crosses itself keeps
-    /// what lies in it an odd number of times
+    /// Keeps the inside of a rectangle: x and y of its lower left corner, width and height, mm; or of a
+    /// polygon: x and y of three corners or more, as 10,10,60,10,35,60. A polygon that crosses itself has its
+    /// inside by the even-odd rule
     #[arg(long, value_name = "X,Y,W,H|X,Y,X,Y,X,Y,...", allow_negative_numbers = true)]
     pub crop: Option<Crop>,
-    /// Draws nothing twice with one pen, not even a part of a line
+    /// Removes lines, and parts of lines, that one pen draws twice
     #[arg(long)]
     pub drop_doubles: bool,
-    /// Makes arcs of lines that lie on a circle within so much, mm: --arcs, or --arcs=0.05 [default: 0.01]
+    /// Makes arcs of lines that lie on a circle within this tolerance, mm: --arcs, or --arcs=0.05 [default:
+    /// 0.01]
     #[arg(long, value_name = "MM", value_parser = factor, allow_negative_numbers = true, num_args = 0..=1, require_equals = true, default_missing_value = "0.01")]
     pub arcs: Option<f64>,
-    /// Leaves out places of lines that lie within so much of what stays, mm
+    /// Removes vertices that lie within this distance of the simplified line, mm
     #[arg(long, value_name = "MM", value_parser = factor, allow_negative_numbers = true)]
     pub simplify_mm: Option<f64>,
-    /// Fills closed strokes with lines at this distance, mm
+    /// Hatches closed strokes with lines at this distance, mm
     #[arg(long, value_name = "MM", value_parser = factor, allow_negative_numbers = true)]
     pub hatch: Option<f64>,
-    /// Direction of the lines that fill, degrees from the right
+    /// Direction of the hatching, degrees counter-clockwise from the x axis
     #[arg(long, value_name = "DEG", value_parser = number, allow_negative_numbers = true, default_value = "45", requires = "hatch")]
     pub hatch_angle: f64,
-    /// Joins strokes whose ends are so near, mm [default with --order: 0.05]
+    /// Joins strokes whose ends are at most this far apart, mm [default with --order: 0.05]
     #[arg(long, value_name = "MM", value_parser = not_negative, allow_negative_numbers = true)]
     pub merge_mm: Option<f64>,
-    /// Draws strokes in an order with less travel, pen by pen, joined where they meet [default with
-    /// --merge-mm: fast]
+    /// Orders strokes for less travel, pen by pen, and joins them where they meet [default with --merge-mm:
+    /// fast]
     #[arg(long, value_enum, value_name = "HOW")]
     pub order: Option<Effort>,
-    /// Changes the pen wherever that shortens the way, instead of once for each pen
+    /// Allows several changes of a pen where that shortens travel, instead of one for each pen
     #[arg(long, requires = "order")]
     pub across_pens: bool,
     /// Begins at a line of the file, with the pen, the speed and the power that hold there
@@ -75,30 +75,30 @@ pub struct Arrangement {
     pub from_layer: Option<String>,
 }
 
-/// Which way a drawing is mirrored.
+/// Axis along which a drawing is mirrored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Mirror {
     /// Left becomes right
     X,
-    /// Above becomes below
+    /// Top becomes bottom
     Y,
 }
 
-/// How hard an order is searched for.
+/// How thoroughly an order is searched for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Effort {
-    /// As in the file; with --merge-mm joined, where the first piece of each is
+    /// The order of the file; with --merge-mm a joined stroke is at the place of its first piece
     None,
     /// From each end to the nearest stroke
     Fast,
-    /// Then shortened further, for some 10 s at most
+    /// As fast, then improved for some 10 s at most
     Best,
 }
 
 /// A page.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Page {
-    /// That of the drawing.
+    /// The drawing's own page.
     Own,
     /// Width and height, mm.
     Size(f64, f64),
@@ -140,12 +140,12 @@ impl FromStr for Page {
     }
 }
 
-/// What is kept of a drawing.
+/// The part of a drawing that is kept.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Crop {
-    /// What lies in a rectangle.
+    /// The inside of a rectangle.
     Rectangle(Bounds),
-    /// What lies in a polygon with these corners.
+    /// The inside of a polygon with these corners.
     Polygon(Vec<Point>),
 }
 
@@ -202,35 +202,35 @@ fn not_negative(text: &str) -> Result<f64, String> {
     if number >= 0.0 { Ok(number) } else { Err("give 0 or more".into()) }
 }
 
-/// Millimetres over which strokes are joined when nothing is said: a tenth of a pen's line.
+/// Default gap across which strokes are joined, mm: a tenth of the width of a pen's line.
 const MERGE_MM: f64 = 0.05;
 
-/// Most that `--order best` looks at: some 10 s, used up by 200,000 strokes and more.
-const LOOKS: u64 = 1_000_000_000;
+/// Budget of `--order best`, comparisons of strokes: some 10 s, used up by 200,000 strokes and more.
+const ORDER_BUDGET: u64 = 1_000_000_000;
 
-/// How far the pen travels while it is lifted and lowered, mm: a servo takes some 0.1 s each way, in which a
-/// plotter at 100 mm/s goes so far.
+/// Travel that lifting and lowering the pen is worth, mm: a servo takes some 0.1 s each way, in which a
+/// plotter at 100 mm/s travels that far.
 const LIFT_MM: f64 = 20.0;
 
-/// What closed strokes hide of a drawing that is arranged.
+/// Whether closed strokes hide the lines below them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Hidden {
-    /// Nothing more.
+    /// They hide nothing.
     None,
-    /// What lies below them.
+    /// They hide the lines below them.
     Below,
-    /// Nothing more: it is hidden, and hatched.
+    /// The drawing's lines are hidden and its areas hatched already.
     Hatched,
 }
 
-/// That `--hatch` has filled nothing.
+/// The warning that `--hatch` has filled nothing.
 pub(crate) fn nothing_filled() -> Diagnostic {
     let text = "--hatch: no stroke is closed, so that nothing is filled: join their ends first (--merge-mm), and convert again";
     Diagnostic::new(Severity::Warning, text.into())
 }
 
 impl Arrangement {
-    /// How closed strokes are filled, if they are.
+    /// Settings of the hatching, if it is asked for.
     pub(crate) fn hatching(&self, tolerance_mm: f64) -> Option<Hatching> {
         let mut hatching = Hatching::default();
         hatching.distance_mm = self.hatch?;
@@ -238,7 +238,8 @@ impl Arrangement {
         Some(hatching)
     }
 
-    /// What is hatched before a drawing is mirrored, turned and scaled, so that it is `hatching` afterwards.
+    /// The hatching to apply before a drawing is mirrored, turned and scaled, which becomes `hatching` by
+    /// that.
     pub(crate) fn before_placing(&self, hatching: Hatching, ops: Ops<'_>) -> Result<Hatching, String> {
         let (mut drawing, _, head) = gathered(ops);
         let before_mm = drawing.length_mm();
@@ -254,7 +255,7 @@ impl Arrangement {
         Ok(before)
     }
 
-    /// Whether the whole drawing has to be there before the first stroke of it can be drawn.
+    /// Whether the whole drawing must be read before its first stroke can be drawn.
     fn needs_all(&self) -> bool {
         let Self { scale, fit, center, rotate, mirror, crop, .. } = self;
         let Self { hatch, drop_doubles, arcs, simplify_mm, merge_mm, order, from_layer, .. } = self;
@@ -265,12 +266,12 @@ impl Arrangement {
         places || cuts || bends || merge_mm.is_some() || order.is_some() || from_layer.is_some()
     }
 
-    /// The operations of a drawing with all that is asked for; `hides` says whether closed strokes hide what
-    /// is below them.
+    /// The operations of a drawing after all changes; `hides` tells whether closed strokes hide the lines
+    /// below them.
     ///
     /// # Errors
     ///
-    /// What cannot be done with it, and what helps.
+    /// A change that is not possible, with the remedy.
     pub(crate) fn apply<'a>(
         &self,
         ops: Ops<'a>,
@@ -331,13 +332,13 @@ impl Arrangement {
                 Effort::Best => OrderEffort::Best,
             };
             let merge_mm = self.merge_mm.unwrap_or(MERGE_MM);
-            // The order of the file is that of its pens too.
+            // In the order of the file pens may change at any time.
             let across_pens = self.across_pens || effort == OrderEffort::Join;
             let merge_gap_px = merge_mm * Order::PX_PER_MM;
             let lift_px = LIFT_MM * Order::PX_PER_MM;
             let order = Order {
                 effort,
-                budget: LOOKS,
+                budget: ORDER_BUDGET,
                 merge_gap_px,
                 bridges_corners: true,
                 across_pens,
@@ -351,7 +352,7 @@ impl Arrangement {
         Ok(arranged)
     }
 
-    /// Mirrored, turned, scaled and put on the page; gives the page.
+    /// Mirrors, turns, scales and places a drawing on the page; returns the page's size.
     fn put(
         &self,
         drawing: &mut Drawing,
@@ -384,7 +385,7 @@ impl Arrangement {
         };
         placement.put(drawing).map_err(|error| error.to_string())?;
         let (bounds, Some((width, height))) = (drawing.bounds(), page_mm) else {
-            // A page that is scaled with what is on it.
+            // Without a page in the options, the drawing's own page is scaled with it.
             return Ok(own_mm.map(|(width, height)| (width * placement.scale, height * placement.scale)));
         };
         let margin_mm = placement.margin_mm;
@@ -400,7 +401,7 @@ impl Arrangement {
     }
 }
 
-/// Leaves out what lies before the first stroke of a layer.
+/// Removes all strokes before the first one of a layer.
 fn from_layer(drawing: &mut Drawing, asked: &str) -> Result<(), String> {
     let names = &drawing.layers;
     let by_name = names.iter().position(|name| name.eq_ignore_ascii_case(asked));
@@ -419,7 +420,7 @@ fn from_layer(drawing: &mut Drawing, asked: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// All of a drawing, what there is to say of it, and what its operations tell besides.
+/// Reads all operations: the drawing, its diagnostics, and the emptied `ops` with its other facts.
 fn gathered(mut ops: Ops<'_>) -> (Drawing, Vec<Diagnostic>, Ops<'_>) {
     let (mut builder, mut said) = (DrawingBuilder::default(), Vec::new());
     while let Some(item) = ops.next() {

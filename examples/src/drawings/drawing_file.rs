@@ -254,13 +254,13 @@ impl DrawingFile {
         })
     }
 
-    /// What it is called in messages.
+    /// Name in messages.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What it is written in.
+    /// Language of the file.
     #[must_use]
     pub fn language(&self) -> Language {
         self.language

@@ -164,7 +164,7 @@ pub(super) fn camera(text: &str) -> Result<Box<CameraSettings>, String> {
 }
 
 impl FollowCommand {
-    /// Runs it; what the exit code means stands in its help.
+    /// Runs the command; its help has the table of exit codes.
     #[must_use]
     pub fn run(self) -> ExitCode {
         let arguments = self;

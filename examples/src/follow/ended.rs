@@ -1,4 +1,4 @@
-//! How a run ended, and what helps.
+//! Ends of a run, with a remedy for each.
 
 use plotter_vector::{
     PxPoint,

@@ -1,4 +1,4 @@
-//! Where windows come from, and who follows the lines in them.
+//! The followers, and the sources of their windows.
 
 use super::command::{FollowCommand, Method, Side, WINDOWS};
 use crate::follow::WindowSource;

@@ -1,6 +1,6 @@
 //! [`FollowMachine`]: the machine under a line follower: its planner and its steps.
 
-use crate::machine::{Happening, SteppedFigures, SteppedPlot};
+use crate::machine::{PlotEvent, SteppedFigures, SteppedPlot};
 use plotter_motion::kinematics::MotorScale;
 use plotter_motion::{Machine, Pen, PlannerSettings, PlotOp, Point, stepgen::StepGenSettings};
 use plotter_vector::PxPoint;
@@ -129,9 +129,9 @@ impl FollowMachine {
         let mut told = self.at;
         let mut at = self.at;
         let mut is_down = tool;
-        let mut take = |happening: Happening| match happening {
-            Happening::Pen(pen) => is_down = if pen == Pen::Down { Tool::Down } else { Tool::Up },
-            Happening::Step(_, _, _, place) => {
+        let mut take = |event: PlotEvent| match event {
+            PlotEvent::Pen(pen) => is_down = if pen == Pen::Down { Tool::Down } else { Tool::Up },
+            PlotEvent::Step { at: place, .. } => {
                 at = PxPoint::new(place.x / mm_per_px - left_px, height_px - place.y / mm_per_px);
                 if at.distance(told) >= TOLD_PX {
                     told = at;

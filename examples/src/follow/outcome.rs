@@ -6,7 +6,7 @@ use plotter_vector::PxPoint;
 use plotter_vector::follow::{FollowReport, Judged};
 use std::fmt::Write as _;
 
-/// What came of a run of a line follower.
+/// Result of a run of a line follower.
 #[derive(Clone, Debug)]
 pub struct FollowOutcome<'a> {
     /// What was followed.
@@ -60,8 +60,11 @@ impl FollowOutcome<'_> {
         for (name, said) in &self.told {
             let _ = writeln!(text, "  {name}: {said}");
         }
-        let _ =
-            writeln!(text, "  machine: {:.1} s in motion, {} steps", self.motion.motion_s, self.motion.steps);
+        let _ = writeln!(
+            text,
+            "  machine: {:.1} s in motion, {} steps",
+            self.motion.motion_s, self.motion.step_events
+        );
         if let Some(map) = &self.map {
             if map.followed_px > 0.0 {
                 let _ = writeln!(
@@ -119,7 +122,7 @@ impl FollowOutcome<'_> {
             "lines_px": judged.map(|judged| judged.true_px),
             "path_px": judged.map(|judged| judged.path_px),
             "motion_s": self.motion.motion_s,
-            "steps": self.motion.steps,
+            "steps": self.motion.step_events,
             "map": self.map,
             "assumed": assumed(&self.told),
             "path_points": strokes.concat(),

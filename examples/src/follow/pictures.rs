@@ -1,4 +1,4 @@
-//! What a line follower did, to be looked at: the path over the drawing as SVG, and a page that plays it.
+//! Pictures of a run of a line follower: the path over the drawing as SVG, and a page that plays it.
 
 use base64::Engine as _;
 use plotter_vector::follow::Tool;

@@ -1,4 +1,4 @@
-//! What lies under the camera, where that is known.
+//! The sheet under the camera, where it is known.
 
 use super::command::FollowCommand;
 use crate::shared::{SizeOptions, UsualSize, at, doubted, read_file, told_ink, told_notes};

@@ -79,7 +79,7 @@ impl V4lCamera {
         Ok(Self { name: path.display().to_string(), stream, format })
     }
 
-    /// What it is called.
+    /// Name of the device.
     #[must_use]
     pub(crate) fn name(&self) -> &str {
         &self.name

@@ -11,10 +11,10 @@ use std::process::ExitCode;
 /// Most frames of one run: a joint of ours takes some milliseconds.
 pub(super) const MOST_FRAMES: u32 = 100_000;
 
-/// Draws a drawing of any length on a simulated sheet, frame by frame, and measures the joints; or tells from
-/// recorded scans how a sheet lies between two frames.
+/// Draws a drawing of any length on a simulated sheet, frame by frame, and measures the joints; or computes
+/// from recorded scans how a sheet lies after it was moved.
 ///
-/// Recorded scans are stitch-trace/1 (one joint) and stitch-batch/1 (many). Of them a list is written with an
+/// Recorded scans are stitch-trace/1 (one joint) or stitch-batch/1 (many). The output is a list with an
 /// object for each joint: theta (rad), tx and ty (mm) of machine = R(theta) frame + t, their standard
 /// deviations and the crossings that agree, or refused with the reason.
 #[derive(Debug, Parser)]
@@ -42,27 +42,27 @@ pub struct LongSheetCommand {
     /// The machine's TOML file [default: machines/textile-plotter.toml]
     #[arg(long, value_name = "FILE")]
     pub(super) machine: Option<PathBuf>,
-    /// Frames to draw; beyond the drawing's end they stay blank, but for their marks [default: as many as the
-    /// drawing has]
+    /// Number of frames; those beyond the drawing's end have marks only [default: as many as the drawing
+    /// has]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_FRAMES)))]
     pub(super) frames: Option<u32>,
     /// The procedure at a frame change
     #[arg(long, value_enum, default_value = "ours")]
     pub(super) method: Method,
-    /// Seed of the paper, its marks and the head
+    /// Seed of all random errors: the paper's, the marks' and the head's
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) seed: u64,
-    /// Paper of that width somewhere on the table: the x of both edges, mm. The head finds it, and the
-    /// drawing goes in its middle [default: as wide as the head can see]
+    /// The x of both edges of the paper, mm. The head finds them, and the drawing goes in the middle
+    /// [default: paper as wide as the head can see]
     #[arg(long, value_name = "LEFT,RIGHT", value_parser = edges, allow_hyphen_values = true)]
     pub(super) paper_edges: Option<[f64; 2]>,
-    /// Share of the frame changes at which the paper folds
+    /// Fraction of the frame changes at which the paper folds, 0 to 1
     #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share, allow_negative_numbers = true)]
     pub(super) folds: f64,
     /// Length of the built-in pattern, m
     #[arg(long, value_name = "M", default_value_t = 30.0, value_parser = metres, allow_negative_numbers = true, conflicts_with = "file")]
     pub(super) length_m: f64,
-    /// Length of the lines of its waves, mm: 0.033 makes ten million of 30 m
+    /// Length of a line of the pattern's waves, mm: at 0.033 a pattern of 30 m has ten million lines
     #[arg(long, value_name = "MM", default_value_t = 1.0, value_parser = chord, allow_negative_numbers = true, conflicts_with = "file")]
     pub(super) chord_mm: f64,
     /// Writes the joints, magnified, and charts of discrepancy and drift
@@ -71,19 +71,19 @@ pub struct LongSheetCommand {
     /// Writes the table from above at one frame change: both frames, marks, scans and the probe for a fold
     #[arg(long, value_name = "F.svg")]
     pub(super) change: Option<PathBuf>,
-    /// The frame whose change that is, from 1
+    /// Number of that frame, from 1
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..), requires = "change")]
     pub(super) change_frame: u32,
     /// Writes all figures as JSON, joint by joint
     #[arg(long, value_name = "F.json")]
     pub(super) report: Option<PathBuf>,
-    /// Recorded scans, in place of a drawing
+    /// Files of recorded scans, in place of a drawing
     #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["file", "frames", "method", "svg", "change", "report", "machine", "paper_edges"])]
     traces: Vec<PathBuf>,
-    /// Which crossings of the traces are used, and by which method
+    /// Method that is applied to the traces, and the crossings that it uses
     #[arg(long, value_enum, default_value = "strip16", requires = "traces")]
     set: Set,
-    /// Where the list of their joints is written; - is the standard output
+    /// File for the list of joints of the traces; - is the standard output
     #[arg(long, value_name = "F.json", default_value = "-", requires = "traces")]
     out: PathBuf,
     #[command(flatten)]
@@ -135,7 +135,7 @@ fn chord(text: &str) -> Result<f64, String> {
 }
 
 impl LongSheetCommand {
-    /// Runs it; what the exit code means stands in its help.
+    /// Runs the command; its help has the table of exit codes.
     #[must_use]
     pub fn run(self) -> ExitCode {
         let arguments = self;

@@ -15,5 +15,5 @@ pub use path_deviation::PathDeviation;
 pub use simulated_board::{SimulatedBoard, board_header, simulate_board};
 pub use simulated_plot::{PlotOutcome, simulate};
 pub use speed_audit::{Moment, MostAccel, SpeedAudit};
-pub use stepped_plot::{BLOCKS, Happening, SteppedFigures, SteppedPlot};
+pub use stepped_plot::{BLOCKS, PlotEvent, SteppedFigures, SteppedPlot};
 pub use streamed_steps::{StreamedSteps, streamed_in_emulator, streamed_on_the_desk};

@@ -9,7 +9,7 @@ use plotter_replay::BenchRecorder;
 use std::fmt::Display;
 use std::io::Write;
 
-/// What came of a simulated plot.
+/// Result of a simulated plot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlotOutcome {
     /// Targets of the drawing.

@@ -1,4 +1,4 @@
-//! [`SteppedPlot`]: a drawing as a machine with stepper motors plots it, walked through step by step.
+//! [`SteppedPlot`]: plots a drawing with simulated stepper motors, and measures every step.
 
 use crate::machine::{Moment, MostAccel, PathDeviation, SpeedAudit};
 use plotter_motion::kinematics::{Cartesian, Kinematics as _, MotorScale};
@@ -9,29 +9,31 @@ use plotter_motion::{
     toolpath::chords,
 };
 
-/// Blocks of look-ahead: more than a controller has, less than what makes a difference.
+/// Blocks of look-ahead: four times as many as Grbl has on an Arduino (16).
 pub const BLOCKS: usize = 64;
 
-/// How finely arcs are compared with what is drawn, mm.
+/// How far chords may be from the arcs in whose place steps are compared with them, mm: a hundredth of a step
+/// at 100 steps/mm.
 const CHORD_MM: f64 = 1e-4;
 
-/// What came of it. All of it is from the steps but for the lengths, which are those of the planned path.
+/// Figures of a plot, measured on its steps; lengths and counts are those of the planned path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SteppedFigures {
-    /// Time in motion, s: without pen and pauses.
+    /// Time in motion, s, without the pen's delays and pauses.
     pub motion_s: f64,
-    /// Time of the machine, s: with all.
+    /// Time of the whole plot, s.
     pub total_s: f64,
     /// Pauses that the drawing asks for, s.
     pub dwell_s: f64,
-    /// Planned path with the pen down and up, mm.
+    /// Planned path with the pen down, mm.
     pub draw_mm: f64,
-    /// See above.
+    /// Planned path with the pen up, mm.
     pub travel_mm: f64,
-    /// Lines and arcs that were planned.
+    /// Lines and arcs after planning, which joins some and rounds corners: the planner's
+    /// [`Course`](plotter_motion::planner::Course)s.
     pub courses: u64,
-    /// Times that either motor or both stepped.
-    pub steps: u64,
+    /// Moments at which one motor or both stepped.
+    pub step_events: u64,
     /// Times that the pen was lowered.
     pub strokes: u64,
     /// Times that the pen was lifted.
@@ -40,16 +42,16 @@ pub struct SteppedFigures {
     pub max_speed_mm_s: f64,
     /// Greatest accelerations.
     pub max_accel: MostAccel,
-    /// Time over which accelerations are the differences of speeds, ms.
+    /// Window over which an acceleration is computed as a difference of speeds, ms.
     pub accel_window_ms: usize,
-    /// Farthest that a step with the pen down is from the drawing, mm.
-    pub from_drawing_mm: f64,
-    /// Farthest that a vertex of the drawing is from the steps, mm.
-    pub from_steps_mm: f64,
+    /// Greatest distance of a step with the pen down from the drawing, mm.
+    pub max_steps_off_drawing_mm: f64,
+    /// Greatest distance of a vertex of the drawing from the steps, mm.
+    pub max_drawing_off_steps_mm: f64,
 }
 
 impl From<&PlotTime> for SteppedFigures {
-    /// Of a plan: nothing is known of steps.
+    /// The figures of a plan; those that need steps are 0.
     fn from(time: &PlotTime) -> Self {
         Self {
             motion_s: time.motion.as_secs_f64(),
@@ -65,18 +67,27 @@ impl From<&PlotTime> for SteppedFigures {
     }
 }
 
-/// Something that happens, for those who draw or write it down.
+/// An event of a plot, for those who draw it or write it down.
 #[derive(Clone, Copy, Debug)]
-pub enum Happening {
+pub enum PlotEvent {
     /// The pen is lifted or lowered.
     Pen(Pen),
-    /// Another pen.
+    /// Another pen is taken.
     SelectPen(u8),
-    /// A new sheet.
+    /// A new sheet is put in.
     NewPage,
-    /// A step by dx and dy at a tick of a microsecond, to a place on the sheet.
-    Step(u64, i8, i8, Point),
-    /// Speed and acceleration of a moment some milliseconds ago, and the pen.
+    /// One motor or both make a step.
+    Step {
+        /// Time since the start, us.
+        tick_us: u64,
+        /// The x motor's step: −1, 0 or 1.
+        dx: i8,
+        /// The y motor's step: −1, 0 or 1.
+        dy: i8,
+        /// The pen's position after the step, mm.
+        at: Point,
+    },
+    /// Speed and acceleration some milliseconds ago, and whether the pen is down.
     Moment(Moment, Pen),
 }
 
@@ -89,16 +100,16 @@ pub struct SteppedPlot {
     deviation: PathDeviation,
     audit: SpeedAudit,
     figures: SteppedFigures,
-    /// Where the drawing's pen is, before planning.
+    /// Where the last operation pushed ends; the steps are behind by what is planned.
     drawn_to: Point,
-    /// The motors, and the pen.
+    /// Position of the motors.
     at: StepPoint,
+    /// The pen after the last step.
     pen: Pen,
-    last_tick: u64,
 }
 
 impl SteppedPlot {
-    /// A machine that stands at the origin.
+    /// A machine that stands at the origin. Its clock counts microseconds: `timing.clock_hz` is ignored.
     ///
     /// # Errors
     ///
@@ -110,12 +121,14 @@ impl SteppedPlot {
     ) -> Result<Self, String> {
         let planner = Planner::new(settings).map_err(|error| error.to_string())?;
         let kinematics = Cartesian::new(motors[0], motors[1]).map_err(|error| error.to_string())?;
+        // Distances up to twice the allowed one, and up to two steps, are found fast. Greater ones are
+        // faults, and may take longer to find.
         let reach_mm = match settings.path {
             plotter_motion::PathMode::Tolerance { path_tolerance_mm } => 2.0 * path_tolerance_mm,
             _ => 2.0 * settings.allowance_mm,
         };
         let coarsest = motors[0].steps_per_mm.min(motors[1].steps_per_mm);
-        let timing = StepGenSettings { clock_hz: 1_000_000, ..timing };
+        let timing = StepGenSettings { clock_hz: 1_000_000, ..timing }; // so that a tick is 1 us
         Ok(Self {
             planner,
             kinematics,
@@ -131,17 +144,16 @@ impl SteppedPlot {
             drawn_to: Point::ORIGIN,
             at: StepPoint::default(),
             pen: Pen::Up,
-            last_tick: 0,
         })
     }
 
-    /// Takes the next operation; tells what happens meanwhile.
+    /// Plans the next operation; meanwhile hands every event of the plot to `on_event`.
     ///
     /// # Errors
     ///
-    /// An operation that cannot be planned, and is left out.
-    pub fn push(&mut self, op: PlotOp, each: &mut impl FnMut(Happening)) -> Result<(), PlanError> {
-        while !self.planner.has_room() && self.advance(each) {}
+    /// An operation that cannot be planned; it is left out.
+    pub fn push(&mut self, op: PlotOp, on_event: &mut impl FnMut(PlotEvent)) -> Result<(), PlanError> {
+        while !self.planner.has_room() && self.advance(on_event) {}
         self.planner.push(op)?;
         let from = self.drawn_to;
         match op {
@@ -163,16 +175,16 @@ impl SteppedPlot {
         Ok(())
     }
 
-    /// Nothing comes for now: the machine goes on until it stands, its pen as it is. More may be pushed
+    /// Runs until the machine stands, without lifting the pen, for a pause in the input. More may be pushed
     /// afterwards.
     ///
     /// # Errors
     ///
-    /// Never, as far as is known.
-    pub fn rest(&mut self, each: &mut impl FnMut(Happening)) -> Result<(), PlanError> {
-        while !self.planner.has_room() && self.advance(each) {}
+    /// None in practice: the planner refuses a rest only while it is full, and room is made first.
+    pub fn rest(&mut self, on_event: &mut impl FnMut(PlotEvent)) -> Result<(), PlanError> {
+        while !self.planner.has_room() && self.advance(on_event) {}
         self.planner.rest()?;
-        while self.advance(each) {}
+        while self.advance(on_event) {}
         Ok(())
     }
 
@@ -182,32 +194,32 @@ impl SteppedPlot {
         seconds(self.steps.tick())
     }
 
-    /// Nothing more comes: the machine goes on until it stands, and lifts its pen.
+    /// Runs until the machine stands, lifts the pen, and returns the figures of the plot.
     ///
     /// # Errors
     ///
-    /// Never, as far as is known.
-    pub fn finish(mut self, each: &mut impl FnMut(Happening)) -> Result<SteppedFigures, PlanError> {
-        self.rest(each)?;
+    /// None in practice, as of [`rest`](Self::rest).
+    pub fn finish(mut self, on_event: &mut impl FnMut(PlotEvent)) -> Result<SteppedFigures, PlanError> {
+        self.rest(on_event)?;
         self.planner.finish()?;
         self.deviation.lift();
-        while self.advance(each) {}
+        while self.advance(on_event) {}
         let pen = self.pen;
-        self.audit.finish(self.steps.tick(), |moment| each(Happening::Moment(moment, pen)));
-        let (from_drawing_mm, from_steps_mm) = self.deviation.most_mm();
+        self.audit.finish(self.steps.tick(), |moment| on_event(PlotEvent::Moment(moment, pen)));
+        let (max_steps_off_drawing_mm, max_drawing_off_steps_mm) = self.deviation.most_mm();
         Ok(SteppedFigures {
             max_speed_mm_s: self.audit.most_speed_mm_s(),
             max_accel: self.audit.most_accel(),
             accel_window_ms: self.audit.window_ms(),
-            from_drawing_mm,
-            from_steps_mm,
+            max_steps_off_drawing_mm,
+            max_drawing_off_steps_mm,
             total_s: seconds(self.steps.tick()),
             ..self.figures
         })
     }
 
-    /// Takes the next action and all its steps; says whether there was one.
-    fn advance(&mut self, each: &mut impl FnMut(Happening)) -> bool {
+    /// Takes the planner's next action and makes all its steps; returns whether there was an action.
+    fn advance(&mut self, on_event: &mut impl FnMut(PlotEvent)) -> bool {
         let Some(action) = self.planner.next_action() else { return false };
         let figures = &mut self.figures;
         let is_motion = match action {
@@ -218,7 +230,7 @@ impl SteppedPlot {
                     Pen::Up => figures.travel_mm += f64::from(course.length_mm),
                     Pen::Down => figures.draw_mm += f64::from(course.length_mm),
                 }
-                self.put(course.pen, each);
+                self.move_pen(course.pen, on_event);
                 false
             }
             Action::Phase(_) => true,
@@ -226,21 +238,21 @@ impl SteppedPlot {
                 figures.dwell_s += duration.as_secs_f64();
                 false
             }
+            // Another pen, another sheet: the planner has lifted the pen for them.
             _ => {
-                self.put(Pen::Up, each);
+                self.move_pen(Pen::Up, on_event);
                 false
             }
         };
         let before = self.steps.tick();
-        if self.steps.push(action).is_err() {
-            return false;
-        }
+        // It refuses an action only while events of the one before are left; the loop below takes them all.
+        let pushed = self.steps.push(action);
+        debug_assert!(pushed.is_ok(), "{pushed:?}");
         while let Some(TimedEvent { tick, event }) = self.steps.next_event() {
-            self.last_tick = tick;
             match event {
-                MotorEvent::Step(StepPair { x, y }) => self.step(tick, x, y, each),
-                MotorEvent::SelectPen(pen) => each(Happening::SelectPen(pen)),
-                MotorEvent::NewPage => each(Happening::NewPage),
+                MotorEvent::Step(StepPair { x, y }) => self.step(tick, x, y, on_event),
+                MotorEvent::SelectPen(pen) => on_event(PlotEvent::SelectPen(pen)),
+                MotorEvent::NewPage => on_event(PlotEvent::NewPage),
                 _ => {}
             }
         }
@@ -250,7 +262,7 @@ impl SteppedPlot {
         true
     }
 
-    fn put(&mut self, pen: Pen, each: &mut impl FnMut(Happening)) {
+    fn move_pen(&mut self, pen: Pen, on_event: &mut impl FnMut(PlotEvent)) {
         if self.pen == pen {
             return;
         }
@@ -258,29 +270,29 @@ impl SteppedPlot {
         match pen {
             Pen::Down => {
                 self.figures.strokes += 1;
-                self.deviation.step(self.place());
+                self.deviation.step(self.pen_position());
             }
             Pen::Up => {
                 self.figures.pen_lifts += 1;
                 self.deviation.lifted();
             }
         }
-        each(Happening::Pen(pen));
+        on_event(PlotEvent::Pen(pen));
     }
 
-    fn step(&mut self, tick: u64, dx: i8, dy: i8, each: &mut impl FnMut(Happening)) {
-        self.figures.steps += 1;
+    fn step(&mut self, tick_us: u64, dx: i8, dy: i8, on_event: &mut impl FnMut(PlotEvent)) {
+        self.figures.step_events += 1;
         self.at =
             StepPoint::new(self.at.x.saturating_add(i32::from(dx)), self.at.y.saturating_add(i32::from(dy)));
-        let (place, pen) = (self.place(), self.pen);
+        let (at, pen) = (self.pen_position(), self.pen);
         if pen == Pen::Down {
-            self.deviation.step(place);
+            self.deviation.step(at);
         }
-        self.audit.step(tick, place, |moment| each(Happening::Moment(moment, pen)));
-        each(Happening::Step(tick, dx, dy, place));
+        self.audit.step(tick_us, at, |moment| on_event(PlotEvent::Moment(moment, pen)));
+        on_event(PlotEvent::Step { tick_us, dx, dy, at });
     }
 
-    fn place(&self) -> Point {
+    fn pen_position(&self) -> Point {
         self.kinematics.point_at(self.at.into())
     }
 }
@@ -304,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_there_and_a_way_back_are_what_the_book_says() {
+    fn a_line_and_the_way_back_take_the_textbook_time() {
         let ops = [
             PlotOp::Draw { to: Point::new(60.0, 80.0), feed_mm_s: None },
             PlotOp::Travel { to: Point::ORIGIN },
@@ -315,10 +327,13 @@ mod tests {
         // the pen goes down and up, 200 ms each
         assert!((found.total_s - 2.6).abs() < 1e-4, "{found:?}");
         assert!((found.draw_mm - 100.0).abs() < 1e-9 && (found.travel_mm - 100.0).abs() < 1e-9);
-        assert_eq!((found.strokes, found.pen_lifts, found.steps), (1, 1, 16_000));
+        assert_eq!((found.strokes, found.pen_lifts, found.step_events), (1, 1, 16_000));
         assert!((found.max_speed_mm_s - 100.0).abs() < 1.0, "{found:?}");
         assert!((found.max_accel.along_mm_s2 - 1000.0).abs() < 50.0, "{found:?}");
-        assert!(found.from_drawing_mm <= 0.0051 && found.from_steps_mm <= 0.0051, "{found:?}");
+        assert!(
+            found.max_steps_off_drawing_mm <= 0.0051 && found.max_drawing_off_steps_mm <= 0.0051,
+            "{found:?}"
+        );
     }
 
     #[test]
@@ -328,7 +343,7 @@ mod tests {
         let found = figures(PlannerSettings::default(), &[draw(50.0, 0.0), lift, lift, draw(50.0, 50.0)]);
         assert_eq!((found.strokes, found.pen_lifts), (2, 2), "and the end lifts it");
         // Each stroke is compared with its own steps.
-        assert!(found.from_drawing_mm < 0.01 && found.from_steps_mm < 0.01, "{found:?}");
+        assert!(found.max_steps_off_drawing_mm < 0.01 && found.max_drawing_off_steps_mm < 0.01, "{found:?}");
     }
 
     #[test]
@@ -338,7 +353,7 @@ mod tests {
             .map(|(x, y)| PlotOp::Draw { to: Point::new(x, y), feed_mm_s: None })
             .to_vec();
         let found = figures(PlannerSettings { path, ..PlannerSettings::default() }, &ops);
-        assert!(found.from_steps_mm > 0.1 && found.from_steps_mm < 0.21, "{found:?}");
-        assert!(found.from_drawing_mm < 0.21, "{found:?}");
+        assert!(found.max_drawing_off_steps_mm > 0.1 && found.max_drawing_off_steps_mm < 0.21, "{found:?}");
+        assert!(found.max_steps_off_drawing_mm < 0.21, "{found:?}");
     }
 }

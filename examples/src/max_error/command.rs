@@ -10,7 +10,7 @@ use plotter_motion::{Machine, MachineConfig};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Draws a scan so that nothing of it is farther off than you say.
+/// Draws a scan within one greatest error that you choose, from the ink of the scan to the ink of the plot.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -35,20 +35,20 @@ pub struct MaxErrorCommand {
     pub(super) size: SizeOptions,
     #[command(flatten)]
     pub(super) paper: PaperOption,
-    /// Of a TIFF with several pictures, which; 1 is the first
+    /// Number of the picture in a TIFF with several, from 1
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) page: u32,
-    /// Ink that is taken for dirt need not be drawn
+    /// Allows ink that looks like dirt to be left out
     #[arg(long)]
     pub(super) allow_dirt: bool,
-    /// Lines closer together than the error may be drawn as one: each is near something drawn, not along a
-    /// line of its own
+    /// Allows lines closer together than the error to be drawn as one: each is near a drawn line, not
+    /// along one of its own
     #[arg(long)]
     pub(super) allow_merged_lines: bool,
     /// Writes all figures as JSON
     #[arg(long, value_name = "F.json")]
     pub(super) report: Option<PathBuf>,
-    /// Writes what was drawn, on a band about the scan's lines as wide as the error allows
+    /// Writes the plotted lines on a band around the scan's lines, as wide as the error allows
     #[arg(long, value_name = "F.svg")]
     pub(super) picture: Option<PathBuf>,
     #[command(flatten)]
@@ -56,7 +56,7 @@ pub struct MaxErrorCommand {
 }
 
 impl MaxErrorCommand {
-    /// Runs it; what the exit code means stands in its help.
+    /// Runs the command; its help has the table of exit codes.
     #[must_use]
     pub fn run(self) -> ExitCode {
         run("max_error", || draw(&self))

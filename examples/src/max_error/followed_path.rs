@@ -1,6 +1,6 @@
 //! A drawing on any simulated machine, with what its motors were told to follow and where the pen truly was.
 
-use crate::machine::{Happening, SimulatedBoard, SteppedPlot};
+use crate::machine::{PlotEvent, SimulatedBoard, SteppedPlot};
 use crate::max_error::TruePath;
 use core::time::Duration;
 use plotter_motion::firmware::MarkingBoardSettings;
@@ -31,7 +31,7 @@ const SWING_MS: u64 = 20;
 /// Rounding of corners from which on a planner is asked for it, mm: less is what it cannot do.
 const LEAST_BLEND_MM: f64 = 1e-3;
 
-/// What came of a drawing.
+/// Result of a drawing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FollowedPath {
     /// Where the pen truly was while it was down, stroke by stroke, mm.
@@ -187,9 +187,9 @@ fn on_steppers(machine: &Machine, ops: &[PlotOp], blend_mm: f64) -> Result<Follo
     };
     let mut plot = stepped(machine, blend_mm)?;
     for op in ops {
-        plot.push(*op, &mut |happening| motors.take(happening)).map_err(|error| error.to_string())?;
+        plot.push(*op, &mut |event| motors.take(event)).map_err(|error| error.to_string())?;
     }
-    let figures = plot.finish(&mut |happening| motors.take(happening)).map_err(|error| error.to_string())?;
+    let figures = plot.finish(&mut |event| motors.take(event)).map_err(|error| error.to_string())?;
     let mut commanded: Vec<Vec<Point>> = Vec::new();
     let (mut at, mut pen) = (Point::ORIGIN, Pen::Up);
     for op in ops {
@@ -236,10 +236,10 @@ struct SteppedMotors {
 }
 
 impl SteppedMotors {
-    fn take(&mut self, happening: Happening) {
-        match happening {
-            Happening::Step(tick, dx, dy, _) => {
-                let at = Duration::from_micros(tick);
+    fn take(&mut self, event: PlotEvent) {
+        match event {
+            PlotEvent::Step { tick_us, dx, dy, .. } => {
+                let at = Duration::from_micros(tick_us);
                 self.plant.run_to(at);
                 self.see();
                 for (axis, step) in Axis::BOTH.into_iter().zip([dx, dy]) {
@@ -251,7 +251,7 @@ impl SteppedMotors {
                 }
                 self.last = at;
             }
-            Happening::Pen(pen) => {
+            PlotEvent::Pen(pen) => {
                 self.settle();
                 self.path.put(pen);
                 self.see();

@@ -40,34 +40,35 @@ use std::time::Instant;
 pub struct PlotCommand {
     /// PNG, JPEG, TIFF, WebP, BMP, GIF, PBM, PGM or PPM picture; without one, a flag as line art
     image: Option<PathBuf>,
-    /// The machine's TOML file, whose table [vectorize] ours takes too [default: the semi-virtual gantry]
+    /// The machine's TOML file; its table [vectorize] holds for our vectorization [default: the
+    /// semi-virtual gantry]
     #[arg(long, value_name = "FILE")]
     pub(super) machine: Option<PathBuf>,
-    /// The controller, whatever the machine's file says
+    /// The controller, in place of the one in the machine's file
     #[arg(long)]
     controller: Option<ControllerArg>,
-    /// The vectorization; the published one is for lines one pixel wide, and draws the wider lines of a scan
-    /// two or three times
+    /// The vectorization; the published one is for lines one pixel wide and draws the wider lines of a
+    /// scan two or three times
     #[arg(long, default_value = "ours")]
     algorithm: AlgorithmArg,
     #[command(flatten)]
     size: SizeOptions,
     #[command(flatten)]
     paper: PaperOption,
-    /// Of a TIFF with several pictures, which; 1 is the first
+    /// Number of the picture in a TIFF with several, from 1
     #[arg(long, value_name = "N", default_value_t = 1)]
     page: u32,
     /// Plots with a firmware instead of the simulated machine: `qemu` for the one in examples/firmware, in
     /// the emulator, or the serial port of a machine that speaks the published protocol or the reliable link
     #[arg(long, value_name = "qemu|PORT")]
     pub(super) firmware: Option<String>,
-    /// What is spoken with a machine on a port
+    /// Protocol for a machine on a port
     #[arg(long, value_name = "auto|digits", default_value = "auto")]
     pub(super) link: LinkArg,
     /// The firmware for --firmware qemu [default: the gantry's, as built in examples/firmware]
     #[arg(long, value_name = "ELF", requires = "firmware")]
     pub(super) elf: Option<PathBuf>,
-    /// Records the duty of the motors too: twice as much
+    /// Records the duty of the motors too; the recording is twice as long
     #[arg(long)]
     pub(super) record_drive: bool,
     /// Folder for the results
@@ -87,7 +88,8 @@ enum ControllerArg {
 
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 pub(super) enum LinkArg {
-    /// The reliable link if the machine knows it, else the ten digits; it is called at its origin
+    /// The reliable link if the machine knows it, else the ten digits. The machine must stand at its
+    /// origin
     Auto,
     /// The published ten digits
     Digits,
@@ -105,7 +107,7 @@ enum AlgorithmArg {
 pub(super) const EMULATED: &str = "qemu";
 
 impl PlotCommand {
-    /// Runs it; what the exit code means stands in its help.
+    /// Runs the command; its help has the table of exit codes.
     #[must_use]
     pub fn run(self) -> ExitCode {
         run("plot", || plot(&self))
@@ -172,7 +174,7 @@ pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
         .map_err(|error| at(picture_path(args), &error))
 }
 
-/// What the machine is to do; the drawing is written on the way.
+/// Moves of the machine; the files of the drawing are written meanwhile.
 fn moves(
     args: &PlotCommand,
     machine: &Machine,
@@ -238,12 +240,12 @@ fn picture_path(args: &PlotCommand) -> &Path {
     args.image.as_deref().unwrap_or(Path::new("flag.png"))
 }
 
-/// A picture as strokes, and where they lie.
+/// The strokes of a picture, and their place on the sheet.
 struct Plan {
     vectorizer: Vectorizer,
     traced: TracedSheet,
     scale: Scale,
-    /// What was taken from the file or assumed.
+    /// Facts taken from the file or assumed.
     told: Vec<(&'static str, String)>,
 }
 
@@ -283,7 +285,7 @@ fn trace(args: &PlotCommand, machine: &Machine) -> Result<Plan, String> {
     Ok(Plan { vectorizer, traced, scale, told })
 }
 
-/// What the chart of the errors says beside them: the thesis' figures, or what ours promises.
+/// Notes on the chart of the errors: the thesis' figures, or the bound that ours promises.
 pub(super) fn promises(vectorizer: &Vectorizer) -> Vec<String> {
     match vectorizer.algorithm {
         Algorithm::Published => vec![

@@ -26,7 +26,7 @@ pub enum PortLanguage {
 
 type Moves = std::vec::IntoIter<PenMove>;
 
-/// Who sends the drawing.
+/// Hosts that send the drawing.
 enum Sender {
     Digits(Box<Host<Moves>>),
     Link(Box<LinkHost<Moves, 8, 128>>),

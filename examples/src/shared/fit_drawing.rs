@@ -1,4 +1,4 @@
-//! Where a drawing lies on a machine's sheet.
+//! Places a drawing on a machine's sheet.
 
 use super::picture_size::{SizeOptions, UsualSize};
 use plotter_motion::{Machine, Point};

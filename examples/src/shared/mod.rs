@@ -1,5 +1,5 @@
-//! What every tool needs: one clear line for every error, exit codes, figures as a table or JSON, progress,
-//! files, pages with pictures, how pictures are traced.
+//! Code that every tool needs: one clear line for every error, exit codes, figures as a table or JSON,
+//! progress, files, pages with pictures, how pictures are traced.
 
 mod command;
 mod doubted;

@@ -189,7 +189,7 @@ mod tests {
         notes.resolution = dpi.map(|dpi| Resolution {
             px_per_mm: [dpi / MM_PER_INCH; 2],
             source: ResolutionSource::Tiff,
-            by_lens: false,
+            has_camera_tags: false,
         });
         notes
     }

@@ -1,4 +1,4 @@
-//! One self-contained page with pictures and figures.
+//! [`html_page`]: one self-contained HTML page with figures and pictures.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -13,7 +13,8 @@ pub enum Figure<'a> {
     Png(&'a [u8], &'a str),
 }
 
-/// An HTML page that needs no other file: title, introduction, a table of (name, value), and pictures.
+/// An HTML page that needs no other file: title, introduction, a table of (name, value) rows, and pictures in
+/// two columns. Texts are escaped; SVG is taken as it is.
 #[must_use]
 pub fn html_page(
     title: &str,
@@ -56,11 +57,13 @@ pub fn html_page(
     page
 }
 
-/// What of an SVG file may stand inside a page: all but the XML declaration.
+/// The part of an SVG file that may stand inside a page: everything from its `<svg`, without the XML
+/// declaration.
 fn inline_svg(svg: &str) -> &str {
     svg.find("<svg").map_or("", |start| svg.get(start..).unwrap_or_default())
 }
 
+/// A text with the characters that HTML reserves replaced.
 pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

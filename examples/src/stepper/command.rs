@@ -7,11 +7,10 @@ use clap::{Parser, ValueEnum};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Plots a drawing on a simulated plotter with stepper motors: how long it takes, and how fast the pen goes
-/// where.
+/// Plots a drawing on a simulated plotter with stepper motors, and measures time, speed and accuracy.
 ///
-/// The file is planned with look-ahead and turned into timed steps; all figures but the lengths are measured
-/// from the steps. The time in motion is that without pen and pauses.
+/// The file is planned with look-ahead and turned into timed steps; all figures except lengths are measured
+/// on the steps. The time in motion does not include the pen's delays and pauses.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -39,11 +38,12 @@ pub struct StepperCommand {
     /// How corners are passed [default: the machine's]
     #[arg(long, value_enum)]
     pub(super) mode: Option<Mode>,
-    /// How far the pen may be from the drawing, mm; chooses --mode tolerance [default: the machine's]
+    /// Greatest distance of the pen from the drawing, mm; chooses --mode tolerance [default: the
+    /// machine's]
     #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     pub(super) tolerance_mm: Option<f64>,
-    /// How far the pen may miss a vertex in the mode exact, because rounding did, mm [default: half the last
-    /// digit that the file writes, or a step, whichever is greater]
+    /// Greatest distance by which --mode exact may miss a vertex, mm: what rounding has moved it by
+    /// already [default: half the last digit of the file's numbers or a step, whichever is greater]
     #[arg(long, value_name = "A", value_parser = allowance, allow_negative_numbers = true)]
     pub(super) allowance_mm: Option<f64>,
     /// Limits the jerk along the path too
@@ -58,41 +58,40 @@ pub struct StepperCommand {
     /// Greatest acceleration of each motor instead, mm/s²; of a belt machine mm of the belt
     #[arg(long, value_names = ["X", "Y"], num_args = 2, value_parser = positive, allow_negative_numbers = true, conflicts_with = "accel")]
     pub(super) accel_axes: Option<Vec<f64>>,
-    /// How far from a corner the circle passes whose speed the corner is taken with, mm [default: the
-    /// machine's, 0.01]
+    /// Junction deviation, mm: a corner is taken at the speed of the circle that passes it at this
+    /// distance [default: the machine's, 0.01]
     #[arg(long, value_name = "D", value_parser = not_negative, allow_negative_numbers = true)]
     pub(super) junction_deviation: Option<f64>,
-    /// Greatest jerk along the path, mm/s³; counts with --s-curve [default: the machine's, 10000]
+    /// Greatest jerk along the path, mm/s³; used with --s-curve [default: the machine's, 10000]
     #[arg(long, value_name = "J", value_parser = positive, allow_negative_numbers = true)]
     pub(super) jerk: Option<f64>,
-    /// Steps to the millimetre of both motors [default: the machine's, 87.58]
+    /// Steps per millimetre of both motors [default: the machine's, 87.58]
     #[arg(long, value_name = "N", value_parser = steps_per_mm, allow_negative_numbers = true)]
     pub(super) steps_per_mm: Option<f64>,
-    /// Plans at the machine's speed whatever speeds (F, VS) the file asks for; otherwise they count where
-    /// they are lower
+    /// Ignores the speeds (F, VS) in the file, which otherwise hold if they are lower than the machine's
     #[arg(long)]
     pub(super) ignore_feed: bool,
-    /// What becomes of what lies outside of the machine's area; there is a warning either way
+    /// Whether movements outside the machine's area are drawn or left out; there is a warning either way
     #[arg(long, value_enum, default_value = "draw")]
     pub(super) outside: Outside,
-    /// Tells the times and lengths from the plan alone, without making its steps: as they would be, in a
+    /// Computes times and lengths from the plan alone, without its steps: the same figures in a
     /// hundredth of the time
     #[arg(long, conflicts_with_all = ["svg", "speed_plot", "steps"])]
     pub(super) estimate: bool,
-    /// Writes the picture that the pen draws: true scale in mm, pen-up ways dashed, the machine's area as
+    /// Writes the picture that the pen draws: true scale in mm, travel dashed, the machine's area as a
     /// frame
     #[arg(long, value_name = "F.svg")]
     pub(super) svg: Option<PathBuf>,
     /// Writes speed and acceleration over time as a chart
     #[arg(long, value_name = "F.svg")]
     pub(super) speed_plot: Option<PathBuf>,
-    /// Writes the steps as text: tick of a microsecond, dx, dy, pen (1 is down) a line
+    /// Writes the steps as text, one per line: time in us, dx, dy, pen (1 is down)
     #[arg(long, value_name = "F")]
     pub(super) steps: Option<PathBuf>,
     /// Writes all figures and diagnostics as JSON
     #[arg(long, value_name = "F.json")]
     pub(super) report: Option<PathBuf>,
-    /// Stops at the first error, or point outside of the area, with exit status 1; notices pass
+    /// Stops at the first error or point outside the area, with exit status 1; notices do not count
     #[arg(long)]
     pub(super) strict: bool,
     #[command(flatten)]
@@ -109,9 +108,9 @@ pub(super) enum Mode {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Outside {
-    /// It is planned all the same
+    /// Draws them
     Draw,
-    /// Lines that begin or end there are left out
+    /// Leaves out lines that begin or end outside
     LeaveOut,
 }
 
@@ -136,7 +135,7 @@ pub(super) fn steps_per_mm(text: &str) -> Result<f64, String> {
 }
 
 impl StepperCommand {
-    /// Runs it; what the exit code means stands in its help.
+    /// Runs the command; its help has the table of exit codes.
     #[must_use]
     pub fn run(self) -> ExitCode {
         let arguments = self;

@@ -39,15 +39,15 @@ pub(super) fn plot(arguments: &StepperCommand) -> Result<(), String> {
         (None, None) => settings,
     };
     let timing = StepGenSettings::of(&machine);
-    let mut read = DrawnExtent::new(config.area);
+    let mut extent = DrawnExtent::new(config.area);
     if arguments.estimate {
         let mut estimator = Estimator::<BLOCKS>::new(settings, timing).map_err(|error| error.to_string())?;
-        walk(arguments, &drawing, ops, &mut read, &mut said, |op| Ok(estimator.push(op)))?;
+        walk(arguments, &drawing, ops, &mut extent, &mut said, |op| Ok(estimator.push(op)))?;
         let time = estimator.finish().map_err(|error| error.to_string())?;
-        check_drawn(&drawing, &read, &said)?;
-        read.warn(&mut said);
+        check_drawn(&drawing, &extent, &said)?;
+        extent.warn(&mut said);
         let figures = PlotFigures::Estimated(&time);
-        let report = SteppedReport::new(&drawing, &machine, &settings, motors, figures, &read, &said);
+        let report = SteppedReport::new(&drawing, &machine, &settings, motors, figures, &extent, &said);
         return tell(arguments, &drawing, &report, &said);
     }
     let mut plot = SteppedPlot::new(settings, timing, motors)?;
@@ -57,14 +57,14 @@ pub(super) fn plot(arguments: &StepperCommand) -> Result<(), String> {
         steps: arguments.steps.as_deref().map(StepFile::create).transpose()?,
         pen: Pen::Up,
     };
-    let colours = walk(arguments, &drawing, ops, &mut read, &mut said, |op| {
-        let outcome = plot.push(op, &mut |happening| writers.take(happening));
+    let colours = walk(arguments, &drawing, ops, &mut extent, &mut said, |op| {
+        let outcome = plot.push(op, &mut |event| writers.take(event));
         let failure = writers.steps.as_mut().and_then(|steps| steps.failure.take());
         failure.map_or(Ok(outcome), Err)
     })?;
-    let figures = plot.finish(&mut |happening| writers.take(happening)).map_err(|error| error.to_string())?;
-    check_drawn(&drawing, &read, &said)?;
-    read.warn(&mut said);
+    let figures = plot.finish(&mut |event| writers.take(event)).map_err(|error| error.to_string())?;
+    check_drawn(&drawing, &extent, &said)?;
+    extent.warn(&mut said);
 
     let title = format!("{}: {:.1} s", drawing.name(), figures.motion_s);
     if let (Some(path), Some(preview)) = (&arguments.svg, writers.preview) {
@@ -80,13 +80,13 @@ pub(super) fn plot(arguments: &StepperCommand) -> Result<(), String> {
         steps.finish()?;
     }
     let figures = PlotFigures::Stepped(&figures);
-    let report = SteppedReport::new(&drawing, &machine, &settings, motors, figures, &read, &said);
+    let report = SteppedReport::new(&drawing, &machine, &settings, motors, figures, &extent, &said);
     tell(arguments, &drawing, &report, &said)
 }
 
-/// That something is drawn.
-fn check_drawn(drawing: &DrawingFile, read: &DrawnExtent, said: &Diagnostics) -> Result<(), String> {
-    if read.drawn > 0 {
+/// Refuses a drawing of which nothing was drawn.
+fn check_drawn(drawing: &DrawingFile, extent: &DrawnExtent, said: &Diagnostics) -> Result<(), String> {
+    if extent.drawn > 0 {
         return Ok(());
     }
     Err(drawing.nothing_drawn(said))

@@ -60,7 +60,7 @@ struct Measured {
 impl Measured {
     fn of(figures: &SteppedFigures) -> Self {
         Self {
-            steps: figures.steps,
+            steps: figures.step_events,
             max_speed_mm_s: figures.max_speed_mm_s,
             max_accel_mm_s2: figures.max_accel.vector_mm_s2,
             max_accel_x_mm_s2: figures.max_accel.axes_mm_s2[0],
@@ -68,9 +68,9 @@ impl Measured {
             max_accel_along_mm_s2: figures.max_accel.along_mm_s2,
             max_accel_across_mm_s2: figures.max_accel.across_mm_s2,
             accel_window_ms: figures.accel_window_ms,
-            max_deviation_mm: figures.from_drawing_mm.max(figures.from_steps_mm),
-            max_steps_from_drawing_mm: figures.from_drawing_mm,
-            max_drawing_from_steps_mm: figures.from_steps_mm,
+            max_deviation_mm: figures.max_steps_off_drawing_mm.max(figures.max_drawing_off_steps_mm),
+            max_steps_from_drawing_mm: figures.max_steps_off_drawing_mm,
+            max_drawing_from_steps_mm: figures.max_drawing_off_steps_mm,
         }
     }
 }
@@ -102,7 +102,7 @@ impl SteppedReport {
         settings: &PlannerSettings,
         motors: [MotorScale; 2],
         figures: PlotFigures<'_>,
-        read: &DrawnExtent,
+        extent: &DrawnExtent,
         said: &Diagnostics,
     ) -> Self {
         let (tolerance_mm, allowance_mm) = match settings.path {
@@ -137,13 +137,13 @@ impl SteppedReport {
             dwell_s: figures.dwell_s,
             draw_mm: figures.draw_mm,
             travel_mm: figures.travel_mm,
-            segments: read.segments,
+            segments: extent.segments,
             courses: figures.courses,
             strokes: figures.strokes,
             pen_lifts: figures.pen_lifts,
             measured,
-            bounds_mm: read.least.zip(read.most).map(|(least, most)| [least.x, least.y, most.x, most.y]),
-            outside: read.outside,
+            bounds_mm: extent.min.zip(extent.max).map(|(min, max)| [min.x, min.y, max.x, max.y]),
+            outside: extent.movements_outside,
             errors,
             warnings,
             notices,

@@ -1,6 +1,6 @@
 //! [`StepFile`]: the steps of a plot as text.
 
-use crate::machine::Happening;
+use crate::machine::PlotEvent;
 use crate::shared::at;
 use plotter_motion::Pen;
 use std::fs::File;
@@ -30,13 +30,13 @@ impl StepFile {
     }
 
     /// Writes what a line tells of: steps, pens and sheets.
-    pub fn take(&mut self, happening: Happening, pen: Pen) {
-        match happening {
-            Happening::Step(tick, dx, dy, _) => {
-                self.line(format_args!("{tick} {dx} {dy} {}\n", u8::from(pen == Pen::Down)));
+    pub fn take(&mut self, event: PlotEvent, pen: Pen) {
+        match event {
+            PlotEvent::Step { tick_us, dx, dy, .. } => {
+                self.line(format_args!("{tick_us} {dx} {dy} {}\n", u8::from(pen == Pen::Down)));
             }
-            Happening::SelectPen(pen) => self.line(format_args!("# pen {pen}\n")),
-            Happening::NewPage => self.line(format_args!("# new sheet\n")),
+            PlotEvent::SelectPen(pen) => self.line(format_args!("# pen {pen}\n")),
+            PlotEvent::NewPage => self.line(format_args!("# new sheet\n")),
             _ => {}
         }
     }

@@ -1,29 +1,31 @@
-//! The operations of a drawing on their way to the planner, and who looks at the steps.
+//! [`walk`] hands the operations of a drawing to the planner one by one; [`Writers`] receive its steps.
 
 use super::command::{Outside, StepperCommand};
 use crate::drawings::{Diagnostic, Diagnostics, DrawingFile, Ops, Severity};
-use crate::machine::Happening;
+use crate::machine::PlotEvent;
 use crate::shared::WorkShown;
 use crate::stepper::{DrawnExtent, SpeedChart, StepFile, SteppedPreview};
 use plotter_motion::{Pen, PlotOp, Point, planner::PlanError};
 
-/// Greatest side of a machine's area, mm: beyond it nothing is planned.
+/// Greatest coordinate that is planned, mm: 100 m, more than any plotter reaches.
 const FARTHEST_MM: f64 = 100_000.0;
 
-/// Reads the drawing, and hands over its operations one by one to be planned; gives the colours of its pens.
-/// `push` says what is wrong with an operation, or why it cannot go on at all.
+/// Reads the drawing, hands its operations to `push` one by one, and returns the colours of its pens.
+///
+/// `push` returns `Ok(Err(_))` for an operation that cannot be planned and is left out, and `Err(_)` if
+/// nothing more can be done.
 pub(super) fn walk(
     arguments: &StepperCommand,
     drawing: &DrawingFile,
     mut ops: Ops<'_>,
-    read: &mut DrawnExtent,
+    extent: &mut DrawnExtent,
     said: &mut Diagnostics,
     mut push: impl FnMut(PlotOp) -> Result<Result<(), PlanError>, String>,
 ) -> Result<Vec<[u8; 3]>, String> {
     let colours = std::mem::take(&mut ops.colours);
     let what = if arguments.estimate { "estimating" } else { "plotting" };
     let bar = WorkShown::of_bytes(arguments.telling, what, drawing.length_bytes());
-    // Whether the pen is not where the next line begins, because an operation was left out.
+    // Whether an operation was left out, so that the pen is not where the next line begins.
     let mut is_lost = false;
     let mut shown = 0;
     let name = drawing.name();
@@ -42,8 +44,8 @@ pub(super) fn walk(
                 continue;
             }
         };
-        let op = read.take(op, ops.line(), arguments.ignore_feed);
-        let outside = read.outside(op);
+        let op = extent.count(op, ops.line(), arguments.ignore_feed);
+        let outside = extent.add_to_extent(op);
         if let Some(place) = op.target().filter(|place| !is_near(*place)) {
             let text = format!("({}, {}) mm is farther than any machine reaches: left out", place.x, place.y);
             let found = Diagnostic { line: ops.line(), ..Diagnostic::new(Severity::Error, text) };
@@ -54,8 +56,8 @@ pub(super) fn walk(
             is_lost = true;
             continue;
         }
-        if outside && arguments.strict {
-            return Err(format!("{name}: {}", read.complaint()));
+        if let (true, Some(warning)) = (outside && arguments.strict, extent.outside_diagnostic()) {
+            return Err(format!("{name}: {warning}"));
         }
         let leaves_out = outside && arguments.outside == Outside::LeaveOut;
         let Some(to) = op.target() else {
@@ -66,11 +68,11 @@ pub(super) fn walk(
             is_lost = true;
             continue;
         }
-        // Nothing is drawn that the drawing does not hold: the way from what is left out is made with the pen
-        // up.
+        // After an operation was left out, the pen travels to where the next one ends: a line from elsewhere
+        // is not in the drawing.
         let op = if std::mem::take(&mut is_lost) { PlotOp::Travel { to } } else { op };
         if plan(op, ops.line(), &mut push, said)? {
-            read.drawn += u64::from(!matches!(op, PlotOp::Travel { .. }));
+            extent.count_planned(op);
         } else {
             is_lost = true;
         }
@@ -83,7 +85,7 @@ fn is_near(place: Point) -> bool {
     place.x.abs() <= FARTHEST_MM && place.y.abs() <= FARTHEST_MM
 }
 
-/// Says whether the operation could be planned.
+/// Hands an operation to `push`; returns whether it could be planned. If not, `said` has the reason.
 pub(super) fn plan(
     op: PlotOp,
     line: Option<u32>,
@@ -97,7 +99,7 @@ pub(super) fn plan(
     Ok(true)
 }
 
-/// Who looks at the steps.
+/// The files that are made of the steps, each only if it was asked for.
 pub(super) struct Writers {
     pub(super) preview: Option<SteppedPreview>,
     pub(super) chart: Option<SpeedChart>,
@@ -106,23 +108,23 @@ pub(super) struct Writers {
 }
 
 impl Writers {
-    pub(super) fn take(&mut self, happening: Happening) {
-        match (happening, &mut self.preview) {
-            (Happening::Pen(pen), preview) => {
+    pub(super) fn take(&mut self, event: PlotEvent) {
+        match (event, &mut self.preview) {
+            (PlotEvent::Pen(pen), preview) => {
                 self.pen = pen;
                 if let Some(preview) = preview {
                     preview.put(pen);
                 }
             }
-            (Happening::SelectPen(pen), Some(preview)) => preview.select(pen),
-            (Happening::Step(_, _, _, place), Some(preview)) => preview.step(place),
+            (PlotEvent::SelectPen(pen), Some(preview)) => preview.select(pen),
+            (PlotEvent::Step { at, .. }, Some(preview)) => preview.step(at),
             _ => {}
         }
-        if let (Happening::Moment(moment, pen), Some(chart)) = (happening, &mut self.chart) {
+        if let (PlotEvent::Moment(moment, pen), Some(chart)) = (event, &mut self.chart) {
             chart.push(moment, pen);
         }
         if let Some(steps) = &mut self.steps {
-            steps.take(happening, self.pen);
+            steps.take(event, self.pen);
         }
     }
 }

@@ -17,10 +17,10 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Size of a pixel where neither the file nor an option says it, mm.
+/// Size of a pixel if neither the file nor an option states it, mm.
 const MM_PER_PX: f64 = 0.1;
 
-/// What helps where a drawing is doubted.
+/// Remedies if a picture does not look like a drawing.
 const REMEDY: &str = "--ink F.png shows what was taken for ink; another way to tell it (--threshold otsu, or a level as --threshold \
                       100) or --min-stroke MM may leave the noise out, and --min-stroke 0 keeps every stroke";
 
@@ -41,77 +41,80 @@ pub(super) const FLAG: &[u8] = include_bytes!("../../data/flag.png");
                   In a checkout of the project, `cargo run --release --example trace --` stands for `plotter trace`."
 )]
 pub struct TraceCommand {
-    /// PNG, JPEG, TIFF, WebP, BMP, GIF, PBM, PGM or PPM picture of lines, of any size but for --pens; - is the
-    /// standard input [default: the flag that comes with the examples]
+    /// PNG, JPEG, TIFF, WebP, BMP, GIF, PBM, PGM or PPM picture of lines, of any size except with
+    /// --pens; - is the standard input [default: the flag that comes with the examples]
     image: Option<PathBuf>,
-    /// Vectorization
+    /// Algorithm of the vectorization
     #[arg(long, value_enum, default_value = "ours")]
     pub(super) algorithm: Choice,
     /// Greatest distance of a pixel from the line that replaces it, px (ours only) [default: 0.5]
     #[arg(long, value_name = "E", allow_negative_numbers = true)]
     pub(super) max_error_px: Option<f64>,
-    /// Circular arcs and circles where they save vertices, within the same error (ours only): CI and AA, G2
-    /// and G3, A
+    /// Uses circular arcs and circles where they save vertices, within the same error (ours only): CI
+    /// and AA in HPGL, G2 and G3 in G-code, A in SVG
     #[arg(long, conflicts_with = "curves")]
     pub(super) arcs: bool,
-    /// Cubic curves instead of arcs where they save vertices, within the same error (ours only): C in SVG,
-    /// chords in HPGL and G-code
+    /// Uses cubic curves instead of arcs where they save vertices, within the same error (ours only): C
+    /// in SVG, chords in HPGL and G-code
     #[arg(long)]
     pub(super) curves: bool,
-    /// What is drawn of the ink (ours only) [default: centreline, with --hatch mixed]
+    /// Whether lines are drawn by their middle or their outline (ours only) [default: centreline, with
+    /// --hatch mixed]
     #[arg(long, value_enum)]
     pub(super) mode: Option<ModeChoice>,
 
-    /// What is given up where one stroke a line leaves ink bare (ours only) [default: both]
+    /// Whether strokes are added where one stroke per line leaves ink bare (ours only) [default: both]
     #[arg(long, value_name = "WHAT")]
     pub(super) prefer: Option<PreferChoice>,
-    /// How ink is told from paper: auto (as the picture asks for: one level, or as photographs, pencil and
-    /// faint lines need it), otsu, adaptive (uneven light), or a level from 0 to 255 [default: auto]
+    /// How ink is told from paper: auto (chosen by the picture: one level for a clean scan, more for
+    /// photographs, pencil and faint lines), otsu, adaptive (uneven light), or a level from 0 to 255
+    /// [default: auto]
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub(super) threshold: Option<String>,
-    /// What is done with marks much paler than the ink, as the ruling of paper and what shines through it
-    /// (with the threshold auto) [default: drop]
+    /// Keeps or drops marks much paler than the ink, such as the ruling of paper or print from the other
+    /// side (with --threshold auto) [default: drop]
     #[arg(long, value_enum, value_name = "WHAT")]
     pub(super) ruling: Option<RulingChoice>,
-    /// Joins strokes that go on in each other beyond a gap of so much, mm on the sheet (ours only) [default:
-    /// none; of pencil and chalk three widths of the lines]
+    /// Joins strokes across gaps up to this length if one continues the other, mm on the sheet (ours
+    /// only) [default: none; for pencil and chalk three line widths]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub(super) gap: Option<f64>,
-    /// Leaves out strokes that are shorter, mm on the sheet (ours only); 0 says that thousands of dots are
-    /// meant, which are doubted otherwise
+    /// Leaves out strokes shorter than this, mm on the sheet (ours only); 0 accepts a picture of
+    /// thousands of dots, which is refused as noise otherwise
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub(super) min_stroke: Option<f64>,
-    /// Pens told apart by colour: how many, auto, or a palette's TOML file (ours only) [default: 1, by grey
-    /// level]
+    /// Pens told apart by colour: a number, auto, or the TOML file of a palette (ours only) [default: 1,
+    /// by grey level]
     #[arg(long, value_name = "N|auto|F.toml", allow_negative_numbers = true)]
     pub(super) pens: Option<String>,
-    /// How hard an order with little travel is searched for (ours only) [default: best]
+    /// How thoroughly an order of the strokes with little travel is searched for (ours only) [default:
+    /// best]
     #[arg(long, value_enum)]
     pub(super) order: Option<OrderChoice>,
     /// Hatches areas with lines this far apart, mm on the sheet (ours only)
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub(super) hatch: Option<f64>,
-    /// Width of the pen that areas are outlined and hatched with, mm on the sheet: its ink ends at their edge
+    /// Width of the pen that outlines and hatches areas, mm on the sheet: its ink ends at their edge
     /// (ours only) [default: a pixel]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub(super) pen_mm: Option<f64>,
-    /// What is wider is an area, px (ours only) [default: found from the picture]
+    /// Ink wider than this is an area, px (ours only) [default: found from the picture]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) max_line_px: Option<i64>,
     #[command(flatten)]
     pub(super) size: SizeOptions,
     #[command(flatten)]
     pub(super) paper: PaperOption,
-    /// Of a TIFF with several pictures, which; 1 is the first
+    /// Number of the picture in a TIFF with several, from 1
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) page: u32,
-    /// A machine's TOML file, whose table [vectorize] is taken where no option says otherwise
+    /// A machine's TOML file: its table [vectorize] sets the defaults of the options
     #[arg(long, value_name = "F.toml")]
     pub(super) config: Option<PathBuf>,
-    /// Threads to work with; the result is the same with any number [default: one a core]
+    /// Threads to work with; the result does not depend on their number [default: one per core]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) threads: Option<i64>,
-    /// Writes the strokes as SVG, in true size: its unit is the picture's px, y down, pixel centres at .5
+    /// Writes the strokes as SVG in true size; its unit is the picture's px, y down, pixel centres at .5
     #[arg(long, value_name = "F")]
     pub(super) svg: Option<PathBuf>,
     /// Writes the strokes as HPGL, y up from the centre of the lower left pixel
@@ -123,9 +126,10 @@ pub struct TraceCommand {
     /// How the G-code lifts the pen
     #[arg(long, value_enum, default_value = "servo")]
     pub(super) gcode_pen: GcodePen,
-    /// Writes the vertices as text: x and y a line, in px as in the SVG, an empty line between strokes; where
-    /// an arc begins its bulge too, the tangent of a quarter of its angle, positive from x towards y; where a
-    /// cubic curve begins the x and y of its two handles too
+    /// Writes the vertices as text: one line with x and y each, in px as in the SVG, and an empty line
+    /// between strokes. A third number is the bulge of an arc that begins there, the tangent of a
+    /// quarter of its angle, positive from x towards y; four more numbers are the x and y of both
+    /// handles of a cubic curve
     #[arg(long, value_name = "F")]
     pub(super) points: Option<PathBuf>,
     /// Writes all figures as JSON
@@ -134,14 +138,14 @@ pub struct TraceCommand {
     /// Writes the distribution of the errors as a bar chart
     #[arg(long, value_name = "F.svg")]
     pub(super) error_plot: Option<PathBuf>,
-    /// Writes the ink that is traced, black on white, in the picture's pixels
+    /// Writes the traced ink, black on white, in the picture's pixels
     #[arg(long, value_name = "F.png")]
     pub(super) ink: Option<PathBuf>,
-    /// Tells what was found of the picture, and writes into a folder the picture of each step: its levels, as
-    /// they are evened where one level does not tell the ink, and the ink
+    /// Prints what was found in the picture, and writes the picture of each step into a folder: its
+    /// levels, the evened levels if one level does not tell the ink, and the ink
     #[arg(long, value_name = "FOLDER")]
     pub(super) explain: Option<PathBuf>,
-    /// Leaves out how far the ink lies from the strokes: the file is read twice less
+    /// Does not measure the distances between ink and strokes: the file is read twice less
     #[arg(long, conflicts_with = "error_plot")]
     pub(super) no_errors: bool,
     /// Writes the strokes on the pale picture, with the pixel of the greatest error circled unless
@@ -154,7 +158,7 @@ pub struct TraceCommand {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum Choice {
-    /// Ordered tracking, pre-elimination, dynamic threshold: as published, without an error bound
+    /// As published: ordered tracking, pre-elimination, dynamic threshold, without an error bound
     Published,
     /// Fewest vertices within the greatest error
     Ours,
@@ -162,7 +166,7 @@ pub(super) enum Choice {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum ModeChoice {
-    /// The middle of lines; what is far wider is outlined
+    /// The middle of lines; much wider ink is outlined
     Centreline,
     /// The outlines of everything
     Outline,
@@ -172,19 +176,19 @@ pub(super) enum ModeChoice {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum PreferChoice {
-    /// Fewest strokes: ink that stays bare is told
+    /// Fewest strokes; ink that stays bare is reported
     Strokes,
-    /// Strokes are added where more than spots are bare and the pen fits into the ink
+    /// Adds strokes where more than spots stay bare and the pen fits into the ink
     Both,
-    /// Strokes are added for spots too, until the ink is covered within the greatest error
+    /// Adds strokes for spots too, until the ink is covered within the greatest error
     Ink,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum RulingChoice {
-    /// They are ink, too
+    /// Such marks are ink
     Keep,
-    /// They are left out
+    /// Such marks are left out
     Drop,
 }
 
@@ -194,7 +198,7 @@ pub(super) enum GcodePen {
     Servo,
     /// G1 Z0 down, G0 Z5 up
     Z,
-    /// M1 90 down, M1 160 up: mDraw, which knows no arcs and gets chords
+    /// M1 90 down, M1 160 up: mDraw, which has no arcs and gets chords
     Mdraw,
 }
 
@@ -209,7 +213,7 @@ pub(super) enum OrderChoice {
 }
 
 impl TraceCommand {
-    /// Runs it; what the exit code means stands in its help.
+    /// Runs the command; its help has the table of exit codes.
     #[must_use]
     pub fn run(self) -> ExitCode {
         let mut stopped = false;
@@ -218,7 +222,7 @@ impl TraceCommand {
     }
 }
 
-/// Traces and writes; `stopped` says that Ctrl-C came before anything was written.
+/// Traces and writes the files; `stopped` returns whether Ctrl-C came before anything was written.
 pub(super) fn trace(arguments: &TraceCommand, stopped: &mut bool) -> Result<(), String> {
     let settings = settings(arguments)?;
     let interrupt = Interrupt::new()?;

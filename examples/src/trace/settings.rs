@@ -1,4 +1,4 @@
-//! What the options and the machine's file ask for.
+//! The settings of a trace, from its options and the machine's file.
 
 use super::command::{Choice, ModeChoice, OrderChoice, PreferChoice, RulingChoice, TraceCommand};
 use crate::shared::{PictureSize, at, read_file, vectorizer};

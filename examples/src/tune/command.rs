@@ -10,9 +10,9 @@ use std::process::ExitCode;
 
 /// Finds gains for the DC motors of a machine, simulated from its file, and the margins that they leave.
 ///
-/// Of every loop the margins are those on the motor as it is, sampled, its duties held, its derivative
-/// filtered. The published gains stand beside ours as they are in the machine's file, called as often as our
-/// loop.
+/// The margins of every loop are those on the simulated motor with sampling, held duties and filtered
+/// derivative. The published gains, as in the machine's file, are shown beside ours at the same sampling
+/// rate.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -36,7 +36,7 @@ pub struct TuneCommand {
     /// How the gains are found
     #[arg(long, value_enum, default_value = "all")]
     method: TuningMethod,
-    /// Which motor
+    /// Motor to tune
     #[arg(long, value_enum, default_value = "both")]
     axis: Axes,
     /// Greatest sensitivity Ms, 1.1 to 3; 1.7 promises a gain margin of 2.43 and a phase margin of 34 degrees
@@ -45,20 +45,20 @@ pub struct TuneCommand {
     /// Phase margin for the relay's gains, degrees, 10 to 70
     #[arg(long, value_name = "DEG", default_value = "45", value_parser = phase_margin, allow_negative_numbers = true)]
     phase_margin: f64,
-    /// How far the simulated motors are from their description, as a share: heavier, rougher, of more
-    /// resistance, on less voltage
+    /// Deviation of the simulated motors from their description, as a fraction: more inertia, friction
+    /// and resistance, less voltage
     #[arg(long, value_name = "SHARE", default_value = "0", value_parser = share, allow_negative_numbers = true)]
     motor_off: f64,
-    /// Runs of the loop a second [default: the machine's]
+    /// Sampling rate of the loop, Hz [default: the machine's]
     #[arg(long, value_name = "HZ", value_parser = loop_hz, allow_negative_numbers = true)]
     loop_hz: Option<f64>,
-    /// How far the experiments may go to either side, mm [default: a tenth of the axis]
+    /// Greatest travel of the experiments to either side, mm [default: a tenth of the axis]
     #[arg(long, value_name = "MM", value_parser = length_mm, allow_negative_numbers = true)]
     travel_mm: Option<f64>,
-    /// Step of the setpoint that the loops are tried with, mm [default: 2, or 80 counts if that is more]
+    /// Setpoint step of the loops' step responses, mm [default: 2, or 80 counts if that is more]
     #[arg(long, value_name = "MM", value_parser = length_mm, allow_negative_numbers = true)]
     step_mm: Option<f64>,
-    /// Writes the loops as a picture: steps, Bode's and Nyquist's
+    /// Writes a picture of the loops: step responses, Bode and Nyquist plots
     #[arg(long, value_name = "F.svg")]
     svg: Option<PathBuf>,
     /// Writes all figures as JSON
@@ -70,11 +70,11 @@ pub struct TuneCommand {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Axes {
-    /// The first
+    /// The x axis
     X,
-    /// The second
+    /// The y axis
     Y,
-    /// One after the other
+    /// Both, one after the other
     Both,
 }
 
@@ -114,7 +114,7 @@ fn length_mm(text: &str) -> Result<f64, String> {
 }
 
 impl TuneCommand {
-    /// Runs it; what the exit code means stands in its help.
+    /// Runs the command; its help has the table of exit codes.
     #[must_use]
     pub fn run(self) -> ExitCode {
         let arguments = self;

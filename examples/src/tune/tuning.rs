@@ -385,7 +385,7 @@ impl TunedAxis {
         );
     }
 
-    /// Its loops as a picture.
+    /// Picture of the control loops.
     #[must_use]
     pub fn chart(&self, settings: &TuningSettings) -> LoopChart {
         let slowest_s =

@@ -1,4 +1,4 @@
-//! What the crates depend on may be used as the crates themselves may.
+//! Licences of all dependencies allow what those of the crates allow.
 
 use serde_json::Value;
 use spdx::{Expression, LicenseReq, ParseMode};

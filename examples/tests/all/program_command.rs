@@ -1,10 +1,10 @@
-//! `plotter`, the program that has the examples and the commands on recordings as subcommands.
+//! The program `plotter`, whose subcommands are the examples and the commands on recordings.
 
 use crate::built_example::{Folder, data, machine, run_example};
 use plotter_examples::shared::ExitStatus;
 use std::process::{Command, Output};
 
-/// The tools, each with the example that has the same code behind it.
+/// The tools, each with the example that runs the same code.
 const TOOLS: [(&str, &str); 9] = [
     ("trace", "trace"),
     ("plot", "plot"),
@@ -17,28 +17,30 @@ const TOOLS: [(&str, &str); 9] = [
     ("compare", "compare_controllers"),
 ];
 
-/// What is done with recordings, and the program's own papers.
+/// Subcommands on recordings, and those for completions and manual pages.
 const OTHERS: [&str; 10] =
     ["render", "check", "replay", "compare-logs", "record", "import", "export", "info", "completions", "man"];
 
-/// Columns of a page of help.
+/// Most columns of a page of help.
 const COLUMNS: usize = 100;
 
 fn plotter(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_plotter")).args(arguments).output().unwrap()
 }
 
-fn words(bytes: &[u8]) -> String {
+/// Output as text.
+fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-/// What was said of a wrong command line.
+/// Runs a wrong command line, and returns its error message.
 fn refused(arguments: &[&str]) -> String {
     let output = plotter(arguments);
     assert_eq!(output.status.code(), Some(ExitStatus::WrongUse.code().into()), "{arguments:?}");
-    words(&output.stderr)
+    text(&output.stderr)
 }
 
+/// Names of all subcommands.
 fn all() -> impl Iterator<Item = &'static str> {
     TOOLS.into_iter().map(|(name, _)| name).chain(OTHERS)
 }
@@ -61,37 +63,37 @@ fn the_program_and_the_example_give_the_same_bytes() {
         let example = TOOLS.iter().find(|(name, _)| name == tool).unwrap().1;
         let (one, other) = (plotter(job), run_example(example, rest));
         assert_eq!(one.status.code(), other.status.code(), "{job:?}");
-        assert_eq!(words(&one.stdout), words(&other.stdout), "{job:?}");
-        assert_eq!(words(&one.stderr), words(&other.stderr), "{job:?}");
+        assert_eq!(text(&one.stdout), text(&other.stdout), "{job:?}");
+        assert_eq!(text(&one.stderr), text(&other.stderr), "{job:?}");
         assert!(!one.stdout.is_empty() || !one.status.success(), "{job:?}");
     }
 }
 
 #[test]
-fn every_help_fits_a_page_and_says_what_can_be_typed() {
-    let whole = words(&plotter(&["--help"]).stdout);
+fn every_help_fits_a_page_and_has_an_example() {
+    let whole = text(&plotter(&["--help"]).stdout);
     for name in all() {
         assert!(whole.lines().any(|line| line.starts_with(&format!("  {name} "))), "{name}: {whole}");
-        let help = words(&plotter(&[name, "--help"]).stdout);
+        let help = text(&plotter(&[name, "--help"]).stdout);
         for line in help.lines().chain(whole.lines()) {
             assert!(line.chars().count() <= COLUMNS, "{name}: {line}");
         }
         assert!(help.contains(&format!("plotter {name} ")), "{name}: {help}");
         assert!(help.contains("Example"), "{name}: {help}");
-        let version = words(&plotter(&[name, "--version"]).stdout);
+        let version = text(&plotter(&[name, "--version"]).stdout);
         assert!(version.trim_end().ends_with(env!("CARGO_PKG_VERSION")), "{name}: {version}");
     }
     for (tool, example) in TOOLS {
-        let help = words(&run_example(example, &["--help"]).stdout);
+        let help = text(&run_example(example, &["--help"]).stdout);
         assert!(help.contains(&format!("--example {example} --")), "{tool}: {help}");
         assert!(!run_example(example, &["--version"]).stdout.is_empty(), "{example}");
     }
 }
 
 #[test]
-fn quiet_and_json_are_options_of_everything_that_tells_figures() {
+fn every_command_with_figures_has_quiet_and_json() {
     for name in all().filter(|name| !["completions", "man"].contains(name)) {
-        let help = words(&plotter(&[name, "--help"]).stdout);
+        let help = text(&plotter(&[name, "--help"]).stdout);
         for option in ["--quiet", "--json"] {
             assert!(help.contains(option), "{name} without {option}: {help}");
         }
@@ -104,14 +106,14 @@ fn quiet_and_json_are_options_of_everything_that_tells_figures() {
         &["tune", "--axis", "x", "--method", "lambda", "--json"],
     ] {
         let output = plotter(job);
-        assert!(output.status.success(), "{job:?}: {}", words(&output.stderr));
+        assert!(output.status.success(), "{job:?}: {}", text(&output.stderr));
         let figures: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
         assert!(figures.as_object().is_some_and(|figures| figures.len() > 3), "{job:?}: {figures}");
     }
 }
 
 #[test]
-fn recordings_are_told_as_json_too_and_what_fails_with_them() {
+fn commands_on_recordings_print_figures_and_errors_as_json() {
     let folder = Folder::new();
     let log = folder.write("line.plog", "plotter-log 1 {\"protocol\":\"digits\",\"baud\":256000}\n");
     let told = |arguments: &[&str]| {
@@ -129,7 +131,7 @@ fn recordings_are_told_as_json_too_and_what_fails_with_them() {
 }
 
 #[test]
-fn a_word_that_is_nearly_right_is_answered_with_the_right_one() {
+fn a_misspelt_word_is_answered_with_the_nearest_one() {
     for (wrong, right) in [
         (&["trce"][..], "'trace'"),
         (&["compare-log"], "'compare-logs'"),
@@ -146,17 +148,17 @@ fn a_word_that_is_nearly_right_is_answered_with_the_right_one() {
 #[test]
 fn completions_and_manual_pages_name_every_subcommand() {
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
-        let script = words(&plotter(&["completions", shell]).stdout);
+        let script = text(&plotter(&["completions", shell]).stdout);
         for name in all() {
             assert!(script.contains(name), "{shell}: {name}");
         }
         assert!(script.contains("max-error-px") && script.contains("centreline"), "{shell}");
     }
-    let page = words(&plotter(&["man"]).stdout);
+    let page = text(&plotter(&["man"]).stdout);
     let folder = Folder::new();
     let pages = folder.file("man1");
     let output = plotter(&["man", &pages]);
-    assert!(output.status.success(), "{}", words(&output.stderr));
+    assert!(output.status.success(), "{}", text(&output.stderr));
     for name in all() {
         let roff = name.replace('-', "\\-");
         assert!(page.contains(&format!("plotter\\-{roff}(1)")), "{name}: {page}");
@@ -182,10 +184,10 @@ fn exit_codes_are_those_of_the_table_which_the_help_and_the_readme_have() {
         (&[], ExitStatus::WrongUse),
     ] {
         let output = plotter(job);
-        let said = words(&output.stderr);
+        let said = text(&output.stderr);
         assert_eq!(output.status.code(), Some(status.code().into()), "{job:?}: {said}");
     }
-    let help = words(&plotter(&["--help"]).stdout);
+    let help = text(&plotter(&["--help"]).stdout);
     let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
     for status in ExitStatus::ALL {
         let (code, meaning) = (status.code(), status.meaning());

@@ -9,7 +9,7 @@ crate::which_pin::which_pin! {
     PinError: digital, Step "STEP: {}", Dir "DIR: {}", Enable "ENABLE: {}", Sleep "SLEEP: {}"
 }
 
-/// What fails at a motor on these pins.
+/// Error of a motor on these pins.
 pub type PinErrorOf<Step, Dir, Enable, Sleep> = PinError<
     <Step as ErrorType>::Error,
     <Dir as ErrorType>::Error,

@@ -14,7 +14,7 @@ pub(super) type MicrostepErrorOf<Ms1, Ms2, Ms3> = MicrostepPinError<
     <Ms3 as digital::ErrorType>::Error,
 >;
 
-/// Which chip, and so which table of resolutions.
+/// Chips, each with its table of resolutions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -78,7 +78,7 @@ impl<Ms1, Ms2, Ms3> MicrostepPins<Ms1, Ms2, Ms3> {
         Self { chip, ms1, ms2, ms3 }
     }
 
-    /// Which chip they are of.
+    /// Chip of these pins.
     pub const fn chip(&self) -> Chip {
         self.chip
     }

@@ -19,7 +19,7 @@ use core::convert::Infallible;
 use embedded_hal::pwm::{self, SetDutyCycle};
 use plotter_motion::{Axis, Direction, Drive, Duty};
 
-/// What the motor's current does while the PWM is off.
+/// Path of the motor's current while the PWM is off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Decay {

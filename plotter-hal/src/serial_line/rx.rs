@@ -14,7 +14,7 @@ const MOST_IN_A_ROW: u8 = 8;
 pub struct Received {
     /// The byte, or [`SUBSTITUTE`] if there was a fault.
     pub byte: u8,
-    /// What was wrong with it.
+    /// Fault of the byte, if any.
     pub fault: Option<Fault>,
 }
 

@@ -1,5 +1,5 @@
-//! What a firmware prints with `defmt`: errors of drivers too whose pins have errors that `defmt` does not
-//! know.
+//! Texts that a firmware prints with `defmt`, among them errors of drivers whose pins have errors that
+//! `defmt` does not know.
 
 use embedded_hal::{digital, pwm};
 use plotter_hal::serial_line::{Fault, FaultCounts, Received};

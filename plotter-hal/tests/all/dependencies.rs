@@ -1,4 +1,4 @@
-//! What a firmware gets with this crate: few others, and no more unless somebody means it.
+//! Dependencies that this crate brings into a firmware: few, and no new one by accident.
 
 use std::collections::BTreeMap;
 

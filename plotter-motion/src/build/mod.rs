@@ -43,7 +43,7 @@ use core::fmt;
 pub struct BuildError {
     /// The file.
     pub path: String,
-    /// What is wrong with it, and where.
+    /// The fault, and its place.
     pub problem: String,
 }
 

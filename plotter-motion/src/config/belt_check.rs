@@ -1,4 +1,4 @@
-//! What must fit together in a machine with one belt.
+//! Checks of settings that must fit together in a machine with one belt.
 
 use super::error::Bound;
 use super::machine::{MAX_COUNTS, demand};

@@ -3,7 +3,7 @@
 use super::MachineKind;
 use core::fmt;
 
-/// What is wrong with a machine's description: which key, which value, what would be right.
+/// Errors in a machine's description, each with key, value and remedy.
 ///
 /// Keys are written as in the TOML file, with dots: `x.motor.resistance_ohm`.
 ///
@@ -29,7 +29,7 @@ pub enum ConfigError {
     OutOfRange {
         /// The key.
         key: &'static str,
-        /// Its value.
+        /// The value of the key.
         value: f64,
         /// The least allowed value.
         least: f64,
@@ -37,14 +37,14 @@ pub enum ConfigError {
         most: f64,
         /// The unit of all three, empty for a plain number.
         unit: &'static str,
-        /// What would be right.
+        /// The remedy.
         remedy: &'static str,
     },
     /// A value contradicts another one.
     Conflict {
         /// The key.
         key: &'static str,
-        /// Its value.
+        /// The value of the key.
         value: f64,
         /// On which side of the limit it must lie.
         bound: Bound,
@@ -52,16 +52,16 @@ pub enum ConfigError {
         limit: f64,
         /// The unit of both, empty for a plain number.
         unit: &'static str,
-        /// Where the limit comes from, and what would be right.
+        /// The origin of the limit, and the remedy.
         remedy: &'static str,
     },
     /// A choice that does not go with another one.
     Unfit {
         /// The key.
         key: &'static str,
-        /// What was chosen.
+        /// The choice.
         value: &'static str,
-        /// What it does not go with, and what would be right.
+        /// The choice that it contradicts, and the remedy.
         remedy: &'static str,
     },
     /// A good description of a machine of another kind than is needed: see
@@ -71,7 +71,7 @@ pub enum ConfigError {
         found: MachineKind,
         /// The kind that is needed.
         wanted: MachineKind,
-        /// What needs it.
+        /// The part of the program that needs it.
         user: &'static str,
     },
 }

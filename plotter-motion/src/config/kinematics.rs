@@ -32,11 +32,11 @@ pub struct KinematicsConfig {
     /// Each its axis, or both by one belt; the key `type`.
     #[cfg_attr(feature = "serde", serde(rename = "type"))]
     pub kind: KinematicsChoice,
-    /// Which way the motors of a belt turn.
+    /// Directions of the motors of a belt.
     pub signs: BeltSigns,
 }
 
-/// What a controller with a plan takes the two motors of a belt to be.
+/// Model of the two motors of a belt for a controller with a plan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 #[non_exhaustive]
@@ -62,7 +62,7 @@ pub struct BeltConfig {
     pub start_y_mm: f64,
     /// Speed of the pen from which on the window of the speed meter has its full length, mm/s.
     pub speed_window_mm_s: f64,
-    /// What the contouring controller takes the motors to be.
+    /// Model of the motors for the contouring controller.
     pub known_motors: KnownMotors,
     /// How long no pulse must have come from a motor until it is driven the other way, ms.
     pub run_down_ms: f64,
@@ -111,7 +111,7 @@ pub struct PointToPointConfig {
     pub period_ms: f64,
     /// Drive at the start of a move, 0 to 1.
     pub drive_start: f64,
-    /// What the drive grows by, 0 to 1.
+    /// Increase of the drive per run, 0 to 1.
     pub drive_step: f64,
     /// How long a step of the drive lasts, ms; 0 for the full drive at once.
     pub drive_step_ms: f64,

@@ -1,4 +1,4 @@
-//! What a machine's description says, with the documented gantry as default.
+//! [`MachineConfig`]: a machine's description, with the documented gantry as default.
 
 use super::{
     BeltConfig, DriveChoice, HomingConfig, KinematicsChoice, KinematicsConfig, LaserConfig, MachineName,
@@ -23,7 +23,7 @@ use crate::plant::StepperSettings;
 pub struct MachineConfig {
     /// Version of this format: 1.
     pub schema: u32,
-    /// What the machine is called.
+    /// Name of the machine.
     pub name: MachineName,
     /// How the motors are driven.
     pub drive: DriveChoice,
@@ -57,7 +57,7 @@ pub struct MachineConfig {
     pub sheet: SheetConfig,
     /// How the two motors move the pen.
     pub kinematics: KinematicsConfig,
-    /// What only a machine with one belt needs.
+    /// Settings for a machine with one belt only.
     pub belt: BeltConfig,
     /// The published controller of such a machine.
     pub point_to_point: PointToPointConfig,
@@ -97,7 +97,7 @@ pub struct SerialConfig {
     pub resync_gap_ms: f64,
 }
 
-/// Which controller leads the motors.
+/// Controllers of the motors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 #[non_exhaustive]
@@ -117,7 +117,7 @@ pub enum ControllerChoice {
     serde(deny_unknown_fields, default)
 )]
 pub struct ControlConfig {
-    /// Which controller.
+    /// The controller.
     pub controller: ControllerChoice,
     /// How many periods of the loop pass before a simulated motor gets what the controller asked for.
     pub latency_periods: u32,
@@ -206,9 +206,9 @@ pub struct AxisConfig {
     pub encoder: EncoderConfig,
     /// The motor and its driver.
     pub motor: MotorConfig,
-    /// What the motor moves.
+    /// The load that the motor moves.
     pub load: LoadConfig,
-    /// What lies between its shaft and the pen, as it is simulated.
+    /// Simulated transmission between the shaft and the pen.
     pub transmission: TransmissionConfig,
     /// How it steps, if the machine has stepper motors.
     pub stepper: StepperConfig,

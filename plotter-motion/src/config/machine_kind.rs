@@ -64,7 +64,7 @@ impl fmt::Display for MachineKind {
 }
 
 impl Machine {
-    /// Which motors it has, and how they move its pen.
+    /// Kind of the machine, by its motors and how they move the pen.
     #[must_use]
     pub const fn kind(&self) -> MachineKind {
         // (a checked machine has no stepper motors on a belt)

@@ -1,4 +1,4 @@
-//! What the writer of an unknown key may have meant: a near spelling, another unit, another table.
+//! Suggestions for an unknown key: a near spelling, another unit, another table.
 
 use super::rules::rules;
 use alloc::{format, string::String, vec::Vec};

@@ -1,4 +1,4 @@
-//! What a plotter with stepper motors needs: how its motors step, how it is planned for, its pen, laser and
+//! Settings of a plotter with stepper motors: how its motors step, how it is planned for, its pen, laser and
 //! homing.
 //!
 //! The defaults are the documented stepper plotter: a Makeblock XY plotter with A4988 drivers, a pen on a
@@ -63,7 +63,7 @@ pub enum PathChoice {
     Tolerance,
 }
 
-/// What the greatest acceleration is a limit of.
+/// Quantity that the greatest acceleration limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 #[non_exhaustive]
@@ -71,7 +71,7 @@ pub enum AccelChoice {
     /// The acceleration of the pen as a vector: `accel_mm_s2`.
     #[default]
     Vector,
-    /// That of each motor: `accel_x_mm_s2` and `accel_y_mm_s2`.
+    /// The limit of each motor: `accel_x_mm_s2` and `accel_y_mm_s2`.
     Axes,
 }
 
@@ -96,7 +96,7 @@ pub struct PlannerConfig {
     pub speed_mm_s: f64,
     /// Greatest speed with the pen up, mm/s.
     pub travel_speed_mm_s: f64,
-    /// What the greatest acceleration is a limit of.
+    /// Quantity that the greatest acceleration limits.
     pub accel_limit: AccelChoice,
     /// Greatest acceleration of the pen with [`AccelChoice::Vector`], mm/s^2.
     pub accel_mm_s2: f64,

@@ -50,7 +50,7 @@ impl Default for ZConfig {
     }
 }
 
-/// Which axis has two motors.
+/// The axis with two motors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 #[non_exhaustive]
@@ -72,7 +72,7 @@ pub enum SecondMotorChoice {
     serde(deny_unknown_fields, default)
 )]
 pub struct SecondMotorConfig {
-    /// Which axis has two.
+    /// The axis with two motors.
     pub axis: SecondMotorChoice,
     /// How much farther the second one leaves its lower switch than the first, mm: what the switches are out
     /// of square.

@@ -34,13 +34,13 @@ impl fmt::Display for TomlPlace {
     }
 }
 
-/// What is wrong with a machine's file: where, which key, and what would be right.
+/// Errors in a machine's file, each with place, key and remedy.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum TomlError {
     /// The text is longer than any machine's file.
     TooLong {
-        /// Its length.
+        /// Length of the file, bytes.
         bytes: usize,
         /// The greatest length that is read.
         limit: usize,
@@ -49,7 +49,7 @@ pub enum TomlError {
     Syntax {
         /// Where.
         at: TomlPlace,
-        /// What the TOML parser says.
+        /// Message of the TOML parser.
         message: String,
     },
     /// The file does not say which version of the format it follows.
@@ -60,7 +60,7 @@ pub enum TomlError {
         at: TomlPlace,
         /// The key with its tables.
         key: String,
-        /// What may have been meant.
+        /// The key that may have been meant.
         remedy: String,
     },
     /// A value of another kind than the key takes.
@@ -69,16 +69,16 @@ pub enum TomlError {
         at: TomlPlace,
         /// The key with its tables.
         key: String,
-        /// What stands there.
+        /// The value in the file.
         found: String,
-        /// What would be right.
+        /// The remedy.
         remedy: String,
     },
     /// A value that no machine can have.
     Invalid {
         /// Where it stands; `None` when the file does not have the key, so that its default holds.
         at: Option<TomlPlace>,
-        /// What is wrong with it.
+        /// The error in the description.
         error: ConfigError,
     },
 }

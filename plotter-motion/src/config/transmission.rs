@@ -1,5 +1,5 @@
-//! What lies between a DC motor's shaft and the pen: `[x.transmission]` and `[y.transmission]`; and how late
-//! its drive acts.
+//! Settings of the parts between a DC motor's shaft and the pen, `[x.transmission]` and `[y.transmission]`,
+//! and of the delay of its drive.
 
 use super::error::Bound;
 use super::rules::{Rule, number, whole};
@@ -20,7 +20,7 @@ pub struct TransmissionConfig {
     pub backlash_mm: f64,
     /// Stiffness of the belt, N/mm; 0 for one that does not stretch.
     pub stiffness_n_per_mm: f64,
-    /// What damps its swing, N s/mm.
+    /// Damping of the belt's oscillation, N s/mm.
     pub damping_n_s_per_mm: f64,
     /// Mass of the carriage, kg.
     pub carriage_kg: f64,

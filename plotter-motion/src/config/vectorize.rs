@@ -12,7 +12,7 @@ use super::FileName;
     serde(deny_unknown_fields, default)
 )]
 pub struct VectorizeConfig {
-    /// What is drawn of the ink.
+    /// Whether lines are drawn by their middle or their outline.
     pub mode: VectorizeMode,
     /// Greatest distance of the ink from the strokes, px of the picture.
     pub max_error_px: f64,
@@ -20,7 +20,7 @@ pub struct VectorizeConfig {
     pub pieces: PiecesChoice,
     /// How ink is told from paper.
     pub threshold: ThresholdChoice,
-    /// Which pens are told apart by their colours.
+    /// Pens that are told apart by their colours.
     pub pens: PensChoice,
     /// How hard an order with little travel is searched for.
     pub order: StrokeOrder,
@@ -29,7 +29,7 @@ pub struct VectorizeConfig {
     /// Width of the pen that areas are outlined and hatched with, mm on the sheet: its ink ends at their
     /// edge. 0 for that of a pixel.
     pub pen_mm: f64,
-    /// What is wider is an area, px of the picture; 0 finds it.
+    /// Ink wider than this is an area, px of the picture; 0 finds it from the picture.
     pub max_line_px: u32,
     /// Threads to work with; 0 for one a core. The strokes are the same with any number.
     pub threads: u32,
@@ -55,7 +55,7 @@ impl Default for VectorizeConfig {
     }
 }
 
-/// What is drawn of the ink.
+/// Whether lines are drawn by their middle or their outline.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 #[non_exhaustive]

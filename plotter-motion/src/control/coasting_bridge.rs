@@ -27,7 +27,7 @@ pub struct CoastingBridge {
     pub tau_periods: f32,
     /// Back EMF as a share of the supply, by speed in counts/s.
     pub back_emf_s: f32,
-    /// What the clamp diodes take, as a share of the supply.
+    /// Voltage of the clamp diodes, as a fraction of the supply.
     pub clamps: f32,
 }
 

@@ -2,7 +2,7 @@
 
 use crate::{Demand, Duty};
 
-/// What a controller of an axis is told, in encoder counts from the start of the line, and seconds.
+/// Input of a controller of one axis, in encoder counts from the start of the line, and seconds.
 ///
 /// There are two answers to where the axis is. [`count`](Self::count) is the plain one: the middle of the
 /// interval that the encoder shows, up to half a count wrong. [`position`](Self::position) and
@@ -79,7 +79,7 @@ pub trait AxisController {
     fn update(&mut self, state: &AxisState, dt_s: f32) -> Duty;
 }
 
-/// What a controller of both axes is told.
+/// Input of a controller of both axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContourState {
     /// The first axis.

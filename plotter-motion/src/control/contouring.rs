@@ -103,7 +103,7 @@ pub struct ContouringSettings {
     pub y: ShaftSettings,
 }
 
-/// What [`Contouring`] must know of an axis.
+/// Settings of an axis for [`Contouring`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ShaftSettings {

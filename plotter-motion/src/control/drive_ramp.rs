@@ -18,7 +18,7 @@ use core::time::Duration;
 pub struct DriveRamp {
     /// Drive at once, 0 to 1.
     pub start: f32,
-    /// What it grows by, 0 to 1.
+    /// Increase of the drive per run, 0 to 1.
     pub step: f32,
     /// Drive that it ends at, 0 to 1.
     pub most: f32,

@@ -17,7 +17,7 @@ pub struct SumPid {
     pub kd: f32,
 }
 
-/// What [`SumPid`] remembers; a reset is `SumPidState::default()`.
+/// State of [`SumPid`]; a reset is `SumPidState::default()`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SumPidState {
     sum: f32,
@@ -64,7 +64,7 @@ pub struct Pid {
     pub output_max: f32,
 }
 
-/// What [`Pid`] remembers; a reset is `PidState::default()`.
+/// State of [`Pid`]; a reset is `PidState::default()`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PidState {
     integral: f32,

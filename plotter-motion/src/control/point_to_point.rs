@@ -53,7 +53,7 @@ pub struct PointToPoint {
     serde(deny_unknown_fields, default)
 )]
 pub struct PointToPointSettings {
-    /// Which way the motors turn.
+    /// Directions of the motors.
     pub signs: BeltSigns,
     /// Error of an axis at which it gets no drive, counts.
     pub allowed_counts: f32,

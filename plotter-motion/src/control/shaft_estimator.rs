@@ -1,4 +1,4 @@
-//! Where a shaft is between two edges of its encoder, how fast it turns, and what holds it back.
+//! Estimates a shaft between two edges of its encoder: position, speed and disturbance.
 
 use super::shaft_fit::ShaftFit;
 use super::shaft_motion::{Fading, ShaftMotion};
@@ -145,7 +145,7 @@ impl ShaftEstimator {
         self.motion.speed
     }
 
-    /// What is wrong with it.
+    /// Fault of the motor or its encoder, if one was found.
     #[must_use]
     pub const fn trouble(&self) -> Option<Trouble> {
         self.watch.trouble()
@@ -175,7 +175,7 @@ impl ShaftEstimator {
         self.watch.start();
     }
 
-    /// What moves it beyond what its model says, counts/s^2.
+    /// Estimated disturbance: acceleration that the model does not explain, counts/s^2.
     #[must_use]
     pub const fn disturbance_counts_s2(&self) -> f32 {
         self.disturbance

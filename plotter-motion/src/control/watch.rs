@@ -3,20 +3,20 @@
 use crate::{Axis, Direction};
 use core::fmt;
 
-/// What is wrong with an axis, as far as its encoder and the drive on it tell.
+/// Faults of an axis that its encoder and its drive show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Trouble {
-    /// It does not move under a drive that would move it whatever its friction. It is let go, and tried again
+    /// The motor does not move under a drive that overcomes any friction. It is released, and tried again
     /// after longer and longer pauses.
     Held,
-    /// It turns against its drive, faster and faster. Both motors are left without drive.
+    /// The motor turns against its drive, faster and faster. Both motors are left without drive.
     WrongWay,
-    /// Its edges came as no shaft can turn, so its place is not known any more. Both motors are left without
+    /// The encoder's edges come as no shaft can turn, so the position is lost. Both motors are left without
     /// drive.
     Encoder,
-    /// It answers its drive otherwise than a moment ago. It is led on by what it does now.
+    /// The motor answers its drive differently than a moment ago. Control continues with its new behaviour.
     Changed,
 }
 
@@ -32,9 +32,9 @@ impl Trouble {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct AxisTrouble {
-    /// Which axis.
+    /// The axis.
     pub axis: Axis,
-    /// What is wrong.
+    /// The fault.
     pub trouble: Trouble,
 }
 

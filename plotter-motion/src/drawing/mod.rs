@@ -1,4 +1,4 @@
-//! [`Drawing`]: strokes on their way from any language, picture or program to any other.
+//! [`Drawing`]: strokes, read from any language or picture, changed, and written to any language.
 //!
 //! ```text
 //! HPGL, G-code, DXF, cutters ──▶ PlotOp ──▶ Drawing ──▶ PlotOp ──▶ planner, writers
@@ -6,13 +6,13 @@
 //!                                   placed, cropped, ordered, hatched, …
 //! ```
 //!
-//! A stroke is what is drawn without lifting the pen: lines, arcs and cubic curves, with the speed and the
-//! power of each. It has a pen and a layer, and what happens before it: a dwell, a new sheet. The way of the
-//! lifted pen is no part of a drawing.
+//! A stroke is drawn without lifting the pen: lines, arcs and cubic curves, each with its speed and power. It
+//! has a pen, a layer, and operations before it, such as a dwell or a new sheet. Travel is not part of a
+//! drawing.
 //!
-//! A drawing is cut to a [`Region`] or a rectangle by [`Drawing::crop`] and [`Drawing::crop_to_rectangle`].
-//! [`Drawing::occlude`] takes away what later closed strokes hide, and [`Drawing::hatch`] fills closed
-//! strokes with lines. Arcs stay arcs and curves curves.
+//! [`Drawing::crop`] and [`Drawing::crop_to_rectangle`] cut a drawing to a [`Region`] or a rectangle.
+//! [`Drawing::occlude`] removes the parts that later closed strokes hide, and [`Drawing::hatch`] fills closed
+//! strokes with lines. Arcs remain arcs, and curves remain curves.
 //!
 //! ```
 //! use plotter_motion::{gcode, hpgl, drawing::{Affine, Drawing}};
@@ -26,9 +26,9 @@
 //! # Ok::<(), gcode::WriteError>(())
 //! ```
 //!
-//! Less to draw and to send: [`Drawing::drop_doubles`] draws nothing twice, [`Drawing::simplify`] leaves out
-//! places of lines, and [`Drawing::fit_arcs`] makes arcs of lines that lie on a circle. In this order, with
-//! `fit_arcs` before `simplify`, each finds most.
+//! Three methods make a drawing shorter: [`Drawing::drop_doubles`] removes lines drawn twice,
+//! [`Drawing::fit_arcs`] makes arcs of lines that lie on a circle, and [`Drawing::simplify`] removes
+//! vertices. Called in this order, each finds most.
 
 pub(crate) mod affine;
 mod arcs;
@@ -76,7 +76,7 @@ use alloc::vec::Vec;
 pub struct Drawing {
     /// The strokes.
     pub strokes: Vec<Stroke>,
-    /// What happens after the last one.
+    /// Operations after the last stroke.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub after: Vec<Mark>,
     /// Names of the layers; layer 1 is the first of them.
@@ -85,7 +85,7 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// One without strokes.
+    /// A drawing without strokes.
     #[must_use]
     pub const fn new() -> Self {
         Self { strokes: Vec::new(), after: Vec::new(), layers: Vec::new() }
@@ -97,7 +97,7 @@ impl Drawing {
         self.strokes.iter().map(Stroke::length_mm).sum()
     }
 
-    /// Way of the lifted pen from stroke to stroke, mm, from the origin to the first.
+    /// Length of travel between strokes, mm, with the way from the origin to the first.
     #[must_use]
     pub fn travel_mm(&self) -> f64 {
         let mut at = Point::ORIGIN;
@@ -105,14 +105,14 @@ impl Drawing {
         self.strokes.iter().map(way).sum()
     }
 
-    /// All segments, each with its stroke and the place where it begins.
+    /// All segments, each with its stroke and its start.
     pub fn segments(&self) -> impl Iterator<Item = (&Stroke, Point, &PathSegment)> {
         self.strokes
             .iter()
             .flat_map(|stroke| stroke.segments().map(move |(from, segment)| (stroke, from, segment)))
     }
 
-    /// The box round all strokes.
+    /// The box around all strokes.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::default();
@@ -120,14 +120,14 @@ impl Drawing {
         bounds
     }
 
-    /// Moves, turns, scales or mirrors all of it.
+    /// Moves, turns, scales or mirrors the drawing.
     pub fn map(&mut self, map: &Affine) {
         for stroke in &mut self.strokes {
             *stroke = stroke.mapped(map);
         }
     }
 
-    /// Draws it from its end to its start. What happens before a stroke still does.
+    /// Reverses the order and the direction of all strokes. Operations before a stroke stay before it.
     pub fn reverse(&mut self) {
         self.strokes.reverse();
         self.strokes.iter_mut().for_each(Stroke::reverse);
@@ -139,27 +139,27 @@ impl Drawing {
         self.strokes.iter().map(|stroke| stroke.pen).collect()
     }
 
-    /// What one pen draws.
+    /// The strokes of one pen.
     #[must_use]
     pub fn of_pen(&self, pen: u8) -> Self {
         self.only(|stroke| stroke.pen == pen)
     }
 
-    /// What lies on one layer, by its number.
+    /// The strokes of one layer, by its number.
     #[must_use]
     pub fn of_layer(&self, layer: u32) -> Self {
         self.only(|stroke| stroke.layer == layer)
     }
 
-    /// Only some of its strokes.
+    /// The strokes that `wanted` selects.
     #[must_use]
     pub fn only(&self, mut wanted: impl FnMut(&Stroke) -> bool) -> Self {
         let strokes = self.strokes.iter().filter(|stroke| wanted(stroke)).cloned().collect();
         Self { strokes, after: self.after.clone(), layers: self.layers.clone() }
     }
 
-    /// What is wrong with it: a stroke without a segment, a number that is none, an arc of more than a turn,
-    /// a layer without a name.
+    /// Checks that each stroke has a segment, finite numbers, no arc of more than a turn, and a layer with a
+    /// name.
     ///
     /// # Errors
     ///
@@ -177,10 +177,10 @@ impl FromIterator<Stroke> for Drawing {
     }
 }
 
-/// That a drawing contradicts itself.
+/// A stroke that cannot be drawn: see [`Drawing::check`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnsoundDrawing {
-    /// Which of its strokes, from 0.
+    /// Number of the stroke, from 0.
     pub stroke: usize,
 }
 
@@ -196,7 +196,7 @@ impl core::fmt::Display for UnsoundDrawing {
 
 impl core::error::Error for UnsoundDrawing {}
 
-/// The parts of a drawing, before it is known whether they go together.
+/// A drawing as it is deserialized, before it is checked.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 struct Parts {

@@ -1,4 +1,4 @@
-//! [`Region`]: an area, and which parts of lines, arcs and curves lie in it.
+//! [`Region`]: an area, by which lines, arcs and curves are cut.
 
 use super::boxes::BoxTree;
 use super::segment::roots;
@@ -7,13 +7,14 @@ use crate::{Point, Segment};
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
-/// How near the border of straight lines a place lies on it, mm: a thousand times what the crossings on a
-/// sheet of 500 mm are rounded by.
+/// Distance within which a point counts as on a border of straight lines, mm: a thousand times the rounding
+/// of crossings on a sheet of 500 mm.
 const BORDER_MM: f64 = 1e-10;
-/// The same as a share of the greatest coordinate, for drawings beyond 10 m: 45 units in its last place.
+/// The same as a fraction of the greatest coordinate, for drawings beyond 10 m: 45 units in the last place.
 const BORDER_SHARE: f64 = 1e-14;
-/// Length that no pen draws and no motor steps, mm: a tenth of a micrometre. Where a circle of 1 m touches an
-/// edge, it lies within the rounding of a crossing, a hundredth of [`BORDER_MM`], for 0.00009 mm.
+/// Pieces shorter than this are ignored, mm: no pen draws and no motor steps a tenth of a micrometre. It is
+/// above 0.00009 mm, the length on which a circle of 1 m that touches an edge lies within the rounding of a
+/// crossing, a hundredth of [`BORDER_MM`].
 pub(super) const DUST_MM: f64 = 1e-4;
 /// The finest tolerance that curves are divided by, mm: a tenth of a micrometre, so that a circle of 10 mm
 /// has some 700 lines at most.
@@ -22,9 +23,9 @@ const FINEST_MM: f64 = 1e-4;
 /// Which side of a region is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Keep {
-    /// What lies in it or on its border.
+    /// The inside and the border.
     Inside,
-    /// What lies neither in it nor on its border.
+    /// The outside, without the border.
     Outside,
 }
 
@@ -35,11 +36,11 @@ enum Side {
     Outside,
 }
 
-/// An area with straight borders: the places within an odd number of its outlines, and those on an outline.
+/// An area with straight borders: the points within an odd number of its outlines, and those on an outline.
 ///
 /// ```text
 /// ┌──────────────┐
-/// │ in  ┌──────┐ │      A ray from a place to the left crosses the outlines an odd number of times from
+/// │ in  ┌──────┐ │      A ray from a point to the left crosses the outlines an odd number of times from
 /// │     │ out  │ │      within, an even number from outside.
 /// └─────┴──────┴─┘
 /// ```
@@ -55,25 +56,25 @@ enum Side {
 pub struct Region {
     edges: Vec<Segment>,
     tree: BoxTree,
-    /// How near an edge a place lies on the border.
+    /// Distance from an edge within which a point is on the border, mm.
     border_mm: f64,
 }
 
 impl Region {
-    /// A rectangle; nothing where it is empty.
+    /// A rectangle; an empty region if the rectangle is empty.
     #[must_use]
     pub fn rectangle(bounds: Bounds) -> Self {
         if bounds.is_empty() { Self::default() } else { Self::polygons([bounds.corners()]) }
     }
 
-    /// Within an odd number of these polygons. The last corner of each is joined to its first; corners that
-    /// are no numbers are left out.
+    /// The points within an odd number of these polygons. The last corner of each is joined to its first;
+    /// corners that are not finite are left out.
     #[must_use]
     pub fn polygons<P: IntoIterator<Item = Point>>(polygons: impl IntoIterator<Item = P>) -> Self {
         Self::with_border(polygons, 0.0)
     }
 
-    /// Within a stroke, if that ends where it begins: see [`outline`].
+    /// The inside of a closed stroke; `None` if it is not closed: see [`outline`].
     pub(super) fn of_stroke(stroke: &Stroke, tolerance_mm: f64) -> Option<Self> {
         let is_straight = stroke.segments.iter().all(|segment| segment.shape == Shape::Line);
         let border_mm = if is_straight { 0.0 } else { tolerance(tolerance_mm) };
@@ -104,25 +105,25 @@ impl Region {
         Self { edges, tree, border_mm }
     }
 
-    /// The box round it, its border included.
+    /// The box around the region, its border included.
     pub(super) fn bounds(&self) -> Bounds {
         self.tree.bounds()
     }
 
-    /// Whether a place lies in it or on its border.
+    /// Whether a point lies in the region or on its border.
     #[must_use]
     pub fn has(&self, place: Point) -> bool {
         self.side(place) != Side::Outside
     }
 
-    /// Whether all lines from place to place lie in it, none of them on its border.
+    /// Whether all lines from point to point lie inside, without touching the border.
     pub(super) fn holds(&self, places: &[Point]) -> bool {
         let is_inside = |place: Point| self.side(place) == Side::Inside;
         places.iter().all(|place| is_inside(*place))
             && places.windows(2).all(|pair| {
                 let &[from, to] = pair else { return true };
                 let line = PathSegment::line(to);
-                // Who leaves it, or touches the border, does so there.
+                // A line can leave the region or touch its border only at these crossings.
                 let cuts = self.crossings(from, &line, &Bounds::between(from, to));
                 cuts.into_iter().all(|share| is_inside(line.at(from, share)))
             })
@@ -149,18 +150,19 @@ impl Region {
         }
     }
 
-    /// Where the part of a segment between two shares lies, none of which crosses the border.
+    /// The side on which a part of a segment lies that does not cross the border; `begin` and `end` are
+    /// fractions of the segment.
     fn side_of(&self, from: Point, segment: &PathSegment, (begin, end): (f64, f64)) -> Side {
-        // The middle tells, unless the segment touches the border there; then other places do. All on the
-        // border, it runs along it. Shares that no drawing has, lest each of them meets a tooth of the same
-        // comb.
+        // The middle decides, unless the segment touches the border there; then other points do. If all are
+        // on the border, the segment runs along it. The fractions are irrational, so that they do not all
+        // meet the teeth of one comb.
         const PLACES: [f64; 4] = [0.5, 0.309_016_994, 0.786_151_378, 0.135_335_283];
         let sides = PLACES.iter().map(|share| self.side(segment.at(from, begin + (end - begin) * share)));
         sides.into_iter().find(|side| *side != Side::Border).unwrap_or(Side::Border)
     }
 
-    /// Leaves those parts of a segment, by their shares in rising order, that lie on the side to keep.
-    /// `bounds` is the box round the segment.
+    /// Reduces `shares`, the parts of a segment as pairs of fractions in rising order, to those on the side
+    /// to keep. `bounds` is the box around the segment.
     pub(super) fn keep(
         &self,
         keep: Keep,
@@ -204,8 +206,8 @@ impl Region {
         *shares = kept;
     }
 
-    /// Shares at which a segment crosses the border, in no order, and others besides: whoever uses them tests
-    /// the parts between.
+    /// Fractions at which a segment may cross the border, in no order. Some are not crossings: the caller
+    /// tests the parts between them.
     fn crossings(&self, from: Point, segment: &PathSegment, bounds: &Bounds) -> Vec<f64> {
         let mut cuts = Vec::new();
         self.tree.each(
@@ -220,8 +222,8 @@ impl Region {
     }
 }
 
-/// Whether a segment can reach into a box that its own box meets: not, where the box lies on one side of its
-/// line.
+/// Whether a segment can reach into a box that its own box meets. A line cannot if the whole box lies on one
+/// side of it.
 pub(super) fn is_near(bounds: &Bounds, from: Point, segment: &PathSegment) -> bool {
     if segment.shape != Shape::Line {
         return true;
@@ -231,7 +233,7 @@ pub(super) fn is_near(bounds: &Bounds, from: Point, segment: &PathSegment) -> bo
     libm::fabs(way.cross(bounds.centre() - from)) <= reach
 }
 
-/// Shares at which a segment crosses an edge or comes to its ends.
+/// Adds the fractions at which a segment crosses an edge or passes its ends.
 fn crossings(from: Point, segment: &PathSegment, edge: Segment, border_mm: f64, cuts: &mut Vec<f64>) {
     let along = edge.to - edge.from;
     let Some(way) = along.normalized() else { return };
@@ -271,7 +273,7 @@ fn crossings(from: Point, segment: &PathSegment, edge: Segment, border_mm: f64, 
 /// as a spiral a third.
 const MOST_TURNS: usize = 4;
 
-/// Shares between 0 and 1 at which the height of a curve turns, and their number.
+/// Fractions between 0 and 1 at which the height of a curve has a maximum or minimum, and their number.
 fn turning_points(
     from: Point,
     segment: &PathSegment,
@@ -290,8 +292,8 @@ fn turning_points(
     match segment.shape {
         Shape::Line => {}
         // At the radius r₀ (1 + g t) and the angle a = a₀ + s t from the upright, the height r cos a turns
-        // where tan a = g / (s (1 + g t)): of a circle, at g = 0, each half turn. The right side changes
-        // little with t: it is put in again until it stays.
+        // where tan a = g / (s (1 + g t)); for a circle, g = 0, at each half turn. The right side changes
+        // little with t, so it is inserted repeatedly until t stays (fixed-point iteration).
         Shape::Arc { centre, sweep_rad } if sweep_rad != 0.0 => {
             let (zero, out) = (height(centre), from - centre);
             let upright = height(centre + out) - zero;
@@ -332,7 +334,7 @@ fn turning_points(
     (turns, count)
 }
 
-/// Where a function is 0 that rises or falls from one place to another and has different signs there.
+/// The zero of a monotonic function between two points at which it has different signs.
 ///
 /// The chord between the two is followed to 0; an end that stays twice counts half (M. Dowell and P. Jarratt,
 /// "A modified regula falsi method for computing the root of an equation", 1971, the Illinois method).
@@ -364,8 +366,8 @@ fn tolerance(tolerance_mm: f64) -> f64 {
     libm::fmax(tolerance_mm, FINEST_MM)
 }
 
-/// The corners of a stroke whose ends are at most `tolerance_mm` apart; its arcs and curves are lines within
-/// that. `None` of another stroke, of one that is not finite, and of one without an area.
+/// The corners of a stroke whose ends are at most `tolerance_mm` apart; arcs and curves become lines within
+/// that tolerance. `None` for an open stroke, one that is not finite, and one without an area.
 pub(super) fn outline(stroke: &Stroke, tolerance_mm: f64) -> Option<Vec<Point>> {
     let tolerance_mm = tolerance(tolerance_mm);
     if !(stroke.from.distance(stroke.to()) <= tolerance_mm && stroke.is_sound()) {

@@ -8,17 +8,17 @@ use core::fmt;
 pub struct Error {
     /// Line of the text, from 1; 0 for one that belongs to no line.
     pub line: u32,
-    /// What is wrong.
+    /// The problem.
     pub problem: Problem,
 }
 
-/// What is wrong, or not done.
+/// Problems in a DXF file: faults, and parts that are not drawn.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Problem {
-    /// It is no DXF in text: what it is instead.
+    /// The file is not DXF in text.
     OtherFormat {
-        /// What it is, and what to do.
+        /// The format that it has, and the remedy.
         what: &'static str,
     },
     /// A line that is no group code, where one belongs.
@@ -30,14 +30,14 @@ pub enum Problem {
     Cut,
     /// An entity without what it needs, or with numbers that are none. It is left out.
     BadEntity {
-        /// Its kind, such as `CIRCLE`.
+        /// Kind of the entity, such as `CIRCLE`.
         kind: String,
-        /// What is wrong with it.
+        /// The fault.
         what: &'static str,
     },
     /// A block that is not there, with all that it would draw.
     NoBlock {
-        /// Its name.
+        /// Name of the block.
         name: String,
     },
     /// Blocks within each other, deeper than 32: one of them holds itself.
@@ -56,7 +56,7 @@ pub enum Problem {
         /// Why, and what helps.
         why: &'static str,
     },
-    /// What is drawn otherwise than it looks. A notice.
+    /// A part that is drawn differently from its looks. A notice.
     Otherwise {
         /// What, how, and what helps.
         what: &'static str,

@@ -2,7 +2,7 @@
 
 use crate::Vec2;
 
-/// What is a pen.
+/// The property of the DXF that chooses the pen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
@@ -31,7 +31,7 @@ pub struct ReadOptions {
     pub unit_mm: Option<f64>,
     /// By how much all is moved, mm.
     pub moved_mm: Vec2,
-    /// What is a pen.
+    /// The property of the DXF that chooses the pen.
     pub pens: Pens,
 }
 

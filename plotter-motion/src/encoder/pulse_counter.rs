@@ -62,7 +62,7 @@ impl PulseCounter {
         self.position
     }
 
-    /// Which way pulses are counted; `None` before the motor has been driven.
+    /// Direction in which pulses are counted; `None` before the motor has been driven.
     #[must_use]
     pub const fn direction(&self) -> Option<Direction> {
         self.direction

@@ -347,13 +347,13 @@ impl<C: LineController> Gantry<C> {
         Some(reply.byte())
     }
 
-    /// What both motors get.
+    /// Drive of both motors.
     #[must_use]
     pub const fn drive(&self) -> Drive<'_> {
         self.drive
     }
 
-    /// What leads the motors.
+    /// Controller of the motors.
     #[must_use]
     pub const fn controller(&self) -> &C {
         &self.controller

@@ -108,7 +108,7 @@ impl<const WINDOW: usize, const PAYLOAD: usize, C: LineController> LinkedGantry<
         if self.under_way && !self.gantry.is_stopped() { self.pen } else { Pen::Up }
     }
 
-    /// What the last order and the button leave the machine to do.
+    /// State of the machine, by the last order and the button.
     #[must_use]
     pub const fn state(&self) -> Order {
         if self.gantry.is_stopped() {

@@ -330,7 +330,7 @@ impl<C: LineController> MarkingBoard<C> {
         }
     }
 
-    /// What both motors get.
+    /// Drive of both motors.
     #[must_use]
     pub const fn drive(&self) -> Drive<'_> {
         self.drive
@@ -356,7 +356,7 @@ impl<C: LineController> MarkingBoard<C> {
         self.points_done
     }
 
-    /// What both motors have been counted to, from the start.
+    /// Counts of both motors since the start.
     #[must_use]
     pub fn counts(&self) -> StepPoint {
         let [first, second] = &self.motors;
@@ -375,7 +375,7 @@ impl<C: LineController> MarkingBoard<C> {
         self.motors.map(|motor| motor.meter.speed_counts_s())
     }
 
-    /// Which way the pulses of a motor are counted, since it was driven first.
+    /// Direction in which the pulses of a motor are counted; `None` before it was driven.
     #[must_use]
     pub fn counting(&self, motor: Axis) -> Option<Direction> {
         let [first, second] = &self.motors;

@@ -184,7 +184,7 @@ impl Block {
         self.checked
     }
 
-    /// What a comment of the line says, if it is one of the few that mean something.
+    /// Meaning of a comment of the line, if it is one of the few that have one.
     #[must_use]
     pub fn remark(&self) -> Option<Remark> {
         self.remark

@@ -11,7 +11,7 @@ pub(super) enum Code {
     Straight,
     Clockwise,
     CounterClockwise,
-    /// What is not carried out, as drilling; or nothing, after `G80`.
+    /// A motion that is not carried out, such as drilling; or none, after `G80`.
     NoMotion,
     Dwell = 0x10,
     Home,
@@ -23,7 +23,7 @@ pub(super) enum Code {
     OriginHere,
     /// `G28.1`, `G30.1`: what `G28` and `G30` go to from here on.
     KeepHome,
-    /// What is not carried out, and takes the words of the line.
+    /// A command that is not carried out, and takes the words of the line.
     Other,
     Inches = 0x20,
     Millimetres,
@@ -76,11 +76,11 @@ pub(super) enum Code {
 pub(super) enum Group {
     /// A way of moving. It holds until another one is asked for.
     Motion,
-    /// What is done once with the words of the line.
+    /// An action with the words of its own line.
     Action,
     /// In which plane arcs lie.
     Plane = 5,
-    /// What `F` counts.
+    /// Unit of `F`.
     Feed = 6,
     Spindle = 7,
     Stop = 8,

@@ -222,7 +222,7 @@ impl Detection {
         }
     }
 
-    /// What a whole text says.
+    /// Detection from a whole program.
     pub fn from_bytes(bytes: impl IntoIterator<Item = u8>) -> Self {
         let (mut lines, mut detection) = (Lines::new(bytes.into_iter()), Self::new());
         while let Some(line) = lines.advance() {

@@ -10,17 +10,17 @@ use core::fmt;
 pub struct Error {
     /// The byte the complaint is about.
     pub at: Position,
-    /// What is wrong.
+    /// The problem.
     pub problem: Problem,
 }
 
-/// What is wrong. Unless it says otherwise, its line is left out.
+/// Problems in a program. Unless the variant says otherwise, the line is left out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Problem {
     /// A byte that no line may hold at this place.
     UnexpectedByte {
-        /// What stands there.
+        /// The byte.
         byte: u8,
     },
     /// A loop or a subprogram, as `LinuxCNC` has them. What is in it is carried out once, where it stands.
@@ -60,12 +60,12 @@ pub enum Problem {
     Pause {
         /// The command.
         command: Word,
-        /// What it asks for.
+        /// The request, in words.
         text: Text,
     },
     /// A command by its name, whose meaning stands in the controller's configuration. A notice.
     Named {
-        /// Its name, and what follows it.
+        /// Name of the command, and the rest of the line.
         name: Text,
     },
     /// Lines behind the end of the program, `M2` or `M30`.
@@ -75,7 +75,7 @@ pub enum Problem {
     },
     /// A formula that has no value.
     Expression {
-        /// What is wrong with it, and what would be right.
+        /// The fault, and the remedy.
         what: &'static str,
     },
     /// A variable by its name that has not been set.
@@ -89,16 +89,16 @@ pub enum Problem {
         function: &'static str,
         /// The number.
         value: f64,
-        /// What it takes.
+        /// The range that is allowed, in words.
         expected: &'static str,
     },
     /// A formula whose value is no number, or a greater one than there is.
     NoValue {
-        /// What stands before the operator; none for a function.
+        /// The value before the operator; none for a function.
         left: Option<f64>,
         /// The operator or function.
         name: &'static str,
-        /// What stands behind it.
+        /// The value behind it.
         right: f64,
     },
     /// A number in a formula that is greater than any there is, as it was written.
@@ -108,12 +108,12 @@ pub enum Problem {
     },
     /// A loop, a condition or a subprogram that cannot be carried out.
     Program {
-        /// What is wrong with it, and what would be right.
+        /// The fault, and the remedy.
         what: &'static str,
     },
     /// A subprogram that is not there.
     NoSubprogram {
-        /// Its number or name.
+        /// Number or name of the subprogram.
         name: Text,
     },
     /// More than 16 words.
@@ -148,7 +148,7 @@ pub enum Problem {
     Unsupported {
         /// The command.
         command: Word,
-        /// What it asks for.
+        /// The request, in words.
         meaning: &'static str,
     },
     /// A word that the commands of its line do not use. Only a notice, the rest of the line is carried out.
@@ -160,12 +160,12 @@ pub enum Problem {
     BadParameter {
         /// The word.
         word: Word,
-        /// What it takes.
+        /// The range that is allowed, in words.
         expected: &'static str,
     },
     /// A command without a word that it needs.
     Missing {
-        /// What lacks.
+        /// The missing word or number.
         expected: &'static str,
     },
     /// Coordinates after `G80`.

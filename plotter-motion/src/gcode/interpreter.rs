@@ -257,7 +257,7 @@ impl Interpreter {
         }
     }
 
-    /// What holds from one line to the next.
+    /// The modes in force.
     #[must_use]
     pub fn modes(&self) -> Modes {
         let modes = self.line.modes();

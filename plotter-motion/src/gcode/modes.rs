@@ -5,7 +5,7 @@ use crate::{Point, Vec2};
 /// Coordinate systems: `G54` to `G59`.
 pub(crate) const SYSTEMS: u8 = 6;
 
-/// What holds from one line to the next: what a controller answers who is asked for its state.
+/// Modes that hold from one line to the next, as a controller reports them.
 ///
 /// ```
 /// # use plotter_motion::gcode::{Interpreter, Reader};
@@ -23,15 +23,15 @@ pub(crate) const SYSTEMS: u8 = 6;
 pub struct Modes {
     /// Where the pen is, mm on the sheet.
     pub position: Point,
-    /// What is added to a coordinate, mm: `G10` and `G92`.
+    /// Offset that is added to coordinates, mm: `G10` and `G92`.
     pub offset: Vec2,
-    /// What of it is set by `G10` for the coordinate system in force, mm.
+    /// Part of the offset that `G10` has set for the coordinate system in force, mm.
     pub origin: Vec2,
-    /// Which coordinate system that is: 0 for `G54` to 5 for `G59`.
+    /// Coordinate system in force: 0 for `G54` to 5 for `G59`.
     pub system: u8,
     /// In which plane arcs lie: 17, 18 or 19, the number of its `G`.
     pub plane: u8,
-    /// What `G43.1` adds to the height of the pen, mm; `G49` ends it.
+    /// Tool length that `G43.1` adds to the height of the pen, mm; `G49` ends it.
     pub length_mm: f64,
     /// `G20`, not `G21`.
     pub inches: bool,

@@ -28,14 +28,14 @@ use core::time::Duration;
 pub struct ReadOptions {
     /// How the pen is lifted and lowered.
     pub pen: PenConvention,
-    /// What the `P` of a `G4` counts.
+    /// Unit of `P` in a `G4`.
     pub dwell_unit: DwellUnit,
     /// The first `G4` after the pen was lifted or lowered belongs to its way if it is no longer than this,
     /// and is no [`PlotOp::Dwell`](crate::PlotOp::Dwell).
     pub settle: Duration,
-    /// What becomes of lines that begin with `/`.
+    /// Treatment of lines that begin with `/`.
     pub block_delete: BlockDelete,
-    /// Which words are known.
+    /// Set of words that are known.
     pub words: Words,
 }
 
@@ -51,7 +51,7 @@ impl Default for ReadOptions {
     }
 }
 
-/// What becomes of lines that begin with `/`.
+/// Treatment of lines that begin with `/`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum BlockDelete {
@@ -63,7 +63,7 @@ pub enum BlockDelete {
     CarryOut,
 }
 
-/// Which words are known.
+/// Set of words that are known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Words {

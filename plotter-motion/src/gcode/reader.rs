@@ -19,7 +19,7 @@ const CONTROL_WORDS: &[u8] = b"SECIDWRB";
 /// The mark that some editors put before a text.
 const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
 
-/// What separates two words.
+/// Separators between words.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Spacing {
     /// Nothing needs to: `G1X10Y5` has three words.

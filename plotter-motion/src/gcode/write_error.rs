@@ -12,7 +12,7 @@ use core::fmt;
 pub enum WriteError {
     /// A coordinate is not a finite number or lies outside the machine's range, or an arc is none.
     Point {
-        /// Which operation.
+        /// Number of the operation, from 0.
         index: u64,
         /// The place asked for, mm.
         to: Point,
@@ -21,14 +21,14 @@ pub enum WriteError {
     },
     /// A speed that rounds to 0 mm/min, or is no number, or too great to be written.
     Feed {
-        /// Which operation.
+        /// Number of the operation, from 0.
         index: u64,
         /// The speed asked for, mm/s.
         feed_mm_s: f64,
     },
     /// A power of a laser that is no share of its full power.
     Power {
-        /// Which operation.
+        /// Number of the operation, from 0.
         index: u64,
         /// The share asked for.
         share: f64,

@@ -33,7 +33,7 @@ pub struct WriteOptions<'a> {
     pub feed_mm_s: f64,
     /// How long the machine stands still after the pen was lifted or lowered; none is written for 0.
     pub settle: Duration,
-    /// What the number of a `G4` counts.
+    /// Unit of the number of a `G4`.
     pub dwell_unit: DwellUnit,
     /// Decimals of coordinates, up to 6. GRBL refuses arcs whose ends lie 0.005 mm unequally far from the
     /// centre, so 3 are needed for arcs.
@@ -111,7 +111,7 @@ pub enum PenChange {
     Tool,
 }
 
-/// What the number of a `G4` counts.
+/// Unit of the number of a `G4`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum DwellUnit {

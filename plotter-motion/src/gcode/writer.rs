@@ -198,7 +198,7 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
         self.put(Pen::Up)
     }
 
-    /// What has been written so far: a host that sends lines as they come takes them out of here.
+    /// Output so far: a host that sends lines as they come takes them out of here.
     pub fn out_mut(&mut self) -> &mut W {
         &mut self.out
     }

@@ -13,16 +13,17 @@ pub enum Error {
     /// A command that this reader does not carry out. Only a notice: it is well understood where the command
     /// ends, and it is skipped whole. See [`Error::is_notice`].
     Unsupported {
-        /// Its first letter.
+        /// Position of its first letter.
         at: Position,
-        /// Which one.
+        /// The command.
         command: Mnemonic,
     },
-    /// What programs for cutters write into HPGL, and what a pen has not. A notice, once for each kind.
+    /// An extension of HPGL by programs for cutters, for parts that a pen plotter lacks. A notice, once for
+    /// each kind.
     Extension {
-        /// Its first byte.
+        /// Position of its first byte.
         at: Position,
-        /// What.
+        /// The extension.
         extension: Extension,
     },
     /// A byte that no command may hold at this place. The rest of the command is skipped.
@@ -31,16 +32,16 @@ pub enum Error {
         at: Position,
         /// The command that holds it; `None` between commands.
         command: Option<Mnemonic>,
-        /// What stands there.
+        /// The byte.
         byte: u8,
     },
     /// A letter that no second letter follows.
     BadMnemonic {
-        /// What follows the letter.
+        /// Position after the letter.
         at: Position,
         /// The letter.
         letter: u8,
-        /// What follows; `None` at the end of the text.
+        /// Byte after the letter; `None` at the end of the text.
         byte: Option<u8>,
     },
     /// A sign or a point without a digit, or a second point. The rest of the command is skipped.
@@ -77,7 +78,7 @@ pub enum Error {
     },
     /// An escape sequence that is none.
     BadEscape {
-        /// What follows the escape.
+        /// Position after the escape.
         at: Position,
         /// The byte there; `None` at the end of the text.
         byte: Option<u8>,
@@ -93,11 +94,11 @@ pub enum Error {
     },
     /// A command that lacks a number it cannot do without. It is skipped.
     MissingParameter {
-        /// Its first letter.
+        /// Position of its first letter.
         at: Position,
-        /// Which one.
+        /// The command.
         command: Mnemonic,
-        /// What it needs.
+        /// The numbers that the command needs, in words.
         expected: &'static str,
     },
     /// A number that the command does not take. The command is skipped.
@@ -108,21 +109,21 @@ pub enum Error {
         command: Mnemonic,
         /// The number.
         value: f64,
-        /// What it takes.
+        /// The numbers that the command takes, in words.
         expected: &'static str,
     },
     /// A command that has no place between `PM0` and `PM2`. It is left out.
     NotInPolygon {
-        /// Its first letter.
+        /// Position of its first letter.
         at: Position,
-        /// Which one.
+        /// The command.
         command: Mnemonic,
     },
     /// The polygon buffer is full. The sides that do not fit are drawn as they come.
     PolygonTooLong {
         /// The first letter of the command whose side does not fit.
         at: Position,
-        /// Which one.
+        /// The command.
         command: Mnemonic,
         /// How many places the buffer has.
         places: u32,
@@ -134,7 +135,7 @@ pub enum Error {
         at: Position,
         /// `CS` or `CA`.
         command: Mnemonic,
-        /// Which set.
+        /// Number of the set.
         set_number: f64,
     },
     /// A character of `DL` for which there is no room: 255 numbers each, and all together a byte for each
@@ -142,21 +143,21 @@ pub enum Error {
     NoRoomForCharacter {
         /// The first letter of the command.
         at: Position,
-        /// Which one.
+        /// The command.
         command: Mnemonic,
     },
     /// A polygon that did not fit into the buffer is not filled.
     NotFilled {
         /// The command that should fill it.
         at: Position,
-        /// Which one.
+        /// The command.
         command: Mnemonic,
     },
     /// Lines so near to each other that a polygon would have more than 16,384 of them. It is not filled.
     TooFine {
         /// The command that should fill it.
         at: Position,
-        /// Which one.
+        /// The command.
         command: Mnemonic,
         /// Distance of the lines, mm.
         spacing_mm: f64,
@@ -164,16 +165,16 @@ pub enum Error {
     /// A label whose place depends on its length, or that is drawn later (`BL`), has more than 150
     /// characters: the others are left out.
     LabelTooLong {
-        /// Its first letter.
+        /// Position of its first letter.
         at: Position,
-        /// Which one.
+        /// The command.
         command: Mnemonic,
     },
     /// More numbers than the command takes. It is carried out without them.
     TooManyParameters {
-        /// Its first letter.
+        /// Position of its first letter.
         at: Position,
-        /// Which one.
+        /// The command.
         command: Mnemonic,
         /// How many it was given.
         given: u32,

@@ -5,7 +5,7 @@ use core::fmt;
 /// Something that is no HPGL, and that programs for cutters write into it for the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Extension {
-    /// Its sign, and the letters after a `!`.
+    /// The sign, and the letters after a `!`.
     signs: [u8; 3],
 }
 
@@ -46,7 +46,7 @@ impl Extension {
         Self { signs: [b'!', first.to_ascii_uppercase(), second.to_ascii_uppercase()] }
     }
 
-    /// What it does on the machines that know it.
+    /// Effect on the machines that know it.
     ///
     /// ```
     /// # use plotter_motion::hpgl::{Event, Reader};

@@ -11,9 +11,9 @@ pub(super) const MOST_LINES: f64 = 16_384.0;
 /// What lies within.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Rule {
-    /// What an odd number of sides surrounds.
+    /// Points within an odd number of sides are filled.
     EvenOdd,
-    /// What the sides go round, counted with their direction.
+    /// Points that the sides go round, counted with their direction, are filled.
     Winding,
 }
 

@@ -1,23 +1,28 @@
-//! [`ReadOptions`]: what a text does not say about its plotter.
+//! [`ReadOptions`]: what an HPGL file leaves open about its plotter.
 
-/// The plotter that a text is meant for, as far as the text leaves it open, and how finely curves are drawn.
+/// Settings that an HPGL file leaves open: its plotter's scaling points and sheet, and how finely curves are
+/// drawn.
 ///
-/// The default is a Hewlett-Packard 7475A with a sheet of A4, which is what `SC` without `IP` is mostly meant
-/// for:
+/// The default is a Hewlett-Packard 7475A with a sheet of A4, for which most files that use `SC` without `IP`
+/// were written. Its scaling points P1 and P2 are the corners of a drawing scaled by `SC`. A plotter unit is
+/// 0.025 mm; P2 lies on the upper edge of the sheet:
 ///
 /// ```text
-///            P2 (10603, 7721)      the sheet: 0 to 11040, 0 to 7721;
-///   ┌───────────┐                  P1 and P2 are where the corners of a
-///   │           │                  drawing scaled with SC lie
-///   └───────────┘
-/// P1 (603, 521)
+/// 7721 ┌───────────────────────────P2─┐    P1 (603, 521)
+///      │   ┌───────────────────────┐  │    P2 (10603, 7721)
+///      │   │ drawing scaled by SC  │  │
+///      │   └───────────────────────┘  │
+///      │   P1                         │
+///    0 └──────────────────────────────┘
+///      0                          11040
 /// ```
 ///
 /// Source: *HP 7475A Interfacing and Programming Manual*, chapter 2, on scaling points.
 ///
 /// ```
 /// # use plotter_motion::{PlotOp, Point, hpgl};
-/// let text = b"SC0,100,0,72;PU100,0;"; // a hundredth of the way from P1 to P2 is 100 units, or 2.5 mm
+/// // SC divides the 10,000 units from P1 to P2 by 100: one of its units is 100 plotter units, or 2.5 mm.
+/// let text = b"SC0,100,0,72;PU100,0;"; // so 100 of them are 250 mm
 /// let options = hpgl::ReadOptions { p1_units: (0, 0), p2_units: (10_000, 7_200), ..Default::default() };
 /// let ops: Vec<_> = hpgl::PlotOps::with_options(text.iter().copied(), options).flatten().collect();
 /// assert_eq!(ops, [PlotOp::Travel { to: Point::new(250.0, 0.0) }]);
@@ -29,14 +34,16 @@
     serde(deny_unknown_fields, default)
 )]
 pub struct ReadOptions {
-    /// How far lines may be from the curves `BZ` and `BR`, and from circles stretched to ellipses, mm,
-    /// above 0. A curve has at most 4096 lines all the same.
+    /// Greatest distance of lines from the curves `BZ` and `BR`, and from circles stretched to ellipses, mm.
+    ///
+    /// 0.01 by default, less than half a plotter unit. A curve never has more than 4096 lines; it has that
+    /// many if this is not above 0.
     pub tolerance_mm: f64,
-    /// The scaling point P1 while `IP` has not moved it, plotter units.
+    /// Scaling point P1 until `IP` moves it, plotter units.
     pub p1_units: (i32, i32),
-    /// The scaling point P2, likewise.
+    /// Scaling point P2 until `IP` moves it, plotter units.
     pub p2_units: (i32, i32),
-    /// The far corner of the sheet, which `IR` counts from, while `PS` has not said it, plotter units.
+    /// Upper right corner of the sheet until `PS` sets it, plotter units; `IR` counts in percent of it.
     pub sheet_units: (i32, i32),
 }
 

@@ -23,16 +23,16 @@ const ETX: u8 = 3;
 pub enum Event {
     /// The two letters of a command.
     Command {
-        /// Which one.
+        /// The command.
         command: Mnemonic,
-        /// Its first letter.
+        /// Position of its first letter.
         at: Position,
     },
     /// A number of the command; within ±2³⁰.
     Number {
         /// The number.
         value: f64,
-        /// Its first byte.
+        /// Position of its first byte.
         at: Position,
         /// Whether the command ends with it.
         last: bool,
@@ -41,7 +41,7 @@ pub enum Event {
     Byte {
         /// The byte.
         byte: u8,
-        /// Its place.
+        /// Position of the byte.
         at: Position,
         /// Whether the command ends with it.
         last: bool,
@@ -61,11 +61,11 @@ pub enum Event {
         /// The first byte of the last one's data, which is encoded too.
         byte: Option<u8>,
     },
-    /// What a cutter's program writes between commands.
+    /// An extension that a cutter's program writes between commands.
     Extension {
-        /// What.
+        /// The extension.
         extension: Extension,
-        /// Its first byte.
+        /// Position of its first byte.
         at: Position,
     },
     /// An escape sequence. `ESC .` speaks to the plotter's interface and may stand anywhere, also between the

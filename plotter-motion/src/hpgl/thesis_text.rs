@@ -82,24 +82,24 @@ pub fn write_moves<W: fmt::Write>(
     Ok(())
 }
 
-/// What a line says.
+/// Contents of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Line {
     /// A movement.
     Move(PenMove),
     /// Words before the first movement, such as the names of the columns. Passed over.
     Header {
-        /// Which line, from 1.
+        /// Number of the line, from 1.
         line: u32,
     },
     /// Nothing. Passed over.
     Blank {
-        /// Which line, from 1.
+        /// Number of the line, from 1.
         line: u32,
     },
 }
 
-/// What is wrong with a line, which is left out. The lines after it are read.
+/// Faults of a line, which is left out. The lines after it are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Error {
@@ -110,14 +110,14 @@ pub enum Error {
     },
     /// A number is expected.
     ExpectedNumber {
-        /// What stands in its place, or the end of the line.
+        /// Position of the other byte, or of the end of the line.
         at: Position,
         /// The byte there; `None` at the end of the line.
         byte: Option<u8>,
     },
     /// A comma is expected after the command or after x.
     ExpectedComma {
-        /// What stands in its place.
+        /// Position of the other byte.
         at: Position,
         /// The byte there.
         byte: u8,

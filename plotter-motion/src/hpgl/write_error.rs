@@ -14,7 +14,7 @@ use core::time::Duration;
 pub enum WriteError {
     /// A coordinate is not a finite number or lies outside the plotter's range.
     Point {
-        /// Which operation.
+        /// Number of the operation, from 0.
         index: u64,
         /// The place asked for, mm.
         to: Point,
@@ -23,14 +23,14 @@ pub enum WriteError {
     },
     /// A speed is not a finite number of at least 0.005 mm/s, or too great to be written.
     Feed {
-        /// Which operation.
+        /// Number of the operation, from 0.
         index: u64,
         /// The speed asked for, mm/s.
         feed_mm_s: f64,
     },
     /// HPGL has no word for standing still.
     Dwell {
-        /// Which operation.
+        /// Number of the operation, from 0.
         index: u64,
         /// How long it should have stood.
         duration: Duration,

@@ -51,7 +51,7 @@ struct Flank {
     offset: i32,
 }
 
-/// What must be done before a move, and where the move then ends.
+/// Extra steps before a move that take up play, and where the move then ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Takeup {
     /// Steps of each motor that move no carriage, to be made first; with sign.

@@ -36,9 +36,9 @@ impl MotorScale {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ScaleError {
-    /// Which axis.
+    /// The axis.
     pub axis: Axis,
-    /// Its steps per millimetre.
+    /// Steps per millimetre.
     pub steps_per_mm: f64,
 }
 

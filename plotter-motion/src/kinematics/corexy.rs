@@ -21,7 +21,7 @@ use super::{Kinematics, MotorPoint, ScaleError};
 use crate::{Axis, Machine, Point};
 use core::ops::{Add, Sub};
 
-/// Which way the two motors of a belt turn for a move of the pen.
+/// Directions of the two motors of a belt for a move of the pen.
 ///
 /// ```
 /// # use plotter_motion::kinematics::BeltSigns;
@@ -124,7 +124,7 @@ impl CoreXy {
         Self { signs: config.kinematics.signs, steps_per_mm: config.x.counts_per_mm }
     }
 
-    /// Which way the motors turn.
+    /// Directions of the motors.
     #[must_use]
     pub const fn signs(&self) -> BeltSigns {
         self.signs

@@ -3,7 +3,7 @@
 use crate::Point;
 use core::fmt;
 
-/// What a planner cannot take.
+/// Reasons why a planner refuses an operation or a setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -39,13 +39,13 @@ pub enum PlanError {
     },
     /// A setting outside its range.
     Setting {
-        /// Which one.
+        /// The setting.
         quantity: &'static str,
-        /// Its value.
+        /// The value of the setting.
         value: f64,
-        /// The least that is taken.
+        /// Least allowed value.
         least: f64,
-        /// The most that is taken.
+        /// Greatest allowed value.
         most: f64,
     },
 }

@@ -97,12 +97,12 @@ mod sealed {
     impl Sealed for super::ExactPen {}
 }
 
-/// What can be kept.
+/// Data that a planner keeps if it is built with a mode.
 #[doc(hidden)]
 pub trait Part: Clone + Debug + Default + PartialEq {}
 impl<T: Clone + Debug + Default + PartialEq> Part for T {}
 
-/// What is kept, or not.
+/// Data that is kept, or nothing in its place.
 #[doc(hidden)]
 pub trait Keep<T>: Part {
     fn get(&self) -> Option<&T>;
@@ -117,7 +117,7 @@ pub struct Here<T>(T);
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Nowhere<T>(PhantomData<T>);
 
-/// What is kept of two.
+/// One of two kinds of data.
 #[doc(hidden)]
 pub trait Choice<A, B>: Clone + Debug + PartialEq {
     fn of(is_second: bool) -> Self;

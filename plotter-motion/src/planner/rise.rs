@@ -18,7 +18,7 @@ use crate::extremes::least;
 use crate::geom::single;
 use crate::root::root;
 
-/// What a third axis can do.
+/// Limits of a third axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ZLimits {

@@ -23,7 +23,7 @@ pub enum PathMode {
     },
 }
 
-/// What the limit of the acceleration is a limit of.
+/// Quantities that the limit of the acceleration may limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum AccelLimit {
@@ -50,7 +50,7 @@ pub enum AccelLimit {
 }
 
 impl AccelLimit {
-    /// That of a machine, by how its motors move the pen.
+    /// The limit of a machine, by how its motors move the pen.
     fn of(machine: &Machine) -> Self {
         let MachineConfig { planner, kinematics, .. } = machine.config();
         let (first, second) = (planner.accel_x_mm_s2, planner.accel_y_mm_s2);

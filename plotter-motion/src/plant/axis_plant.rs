@@ -71,7 +71,7 @@ enum Decoder {
 pub struct CountedEdge {
     /// When, as a share of the step, 0 to 1.
     pub share_of_step: f64,
-    /// Which way.
+    /// Direction.
     pub direction: Direction,
 }
 
@@ -193,7 +193,8 @@ impl AxisPlant {
         self.state
     }
 
-    /// What the motor takes from its supply under `duty` now, W; below 0 while it brakes and gives back.
+    /// Power that the motor takes from its supply under `duty` now, W; negative while it brakes and gives
+    /// back.
     ///
     /// ```
     /// # use plotter_motion::{Duty, config::AxisConfig, plant::AxisPlant};

@@ -149,7 +149,7 @@ impl BeltDrive {
         self.mm_per_rad * state.motor.angle_rad - state.carriage_mm
     }
 
-    /// What the belt pulls the carriage forwards with, N.
+    /// Force of the belt on the carriage, forwards, N.
     #[must_use]
     pub fn force_n(&self, state: &BeltDriveState) -> f64 {
         let stretch_mm = self.stretch_mm(state);

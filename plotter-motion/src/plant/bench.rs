@@ -29,7 +29,7 @@ impl Default for BenchSettings {
     }
 }
 
-/// What happens on the bench, as a recorder beside the machine sees it.
+/// Events on the bench, as a recorder beside the machine sees them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BenchEvent {
     /// A byte of the host is through.

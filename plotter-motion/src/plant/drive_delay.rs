@@ -39,7 +39,7 @@ impl DriveDelay {
         Self { delay, on_the_way: [(Duration::ZERO, none); MOST], waiting: 0, last: none, acting: none }
     }
 
-    /// That of a machine: `control.latency_periods` of its loop.
+    /// The delay of a machine: `control.latency_periods` periods of its control loop.
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
         let control = &machine.config().control;

@@ -8,7 +8,7 @@ use crate::{
 };
 use core::f64::consts::TAU;
 
-/// What a simulated board is made of.
+/// Settings of a simulated board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct MarkingBoardPlantSettings {
@@ -198,7 +198,7 @@ impl MarkingBoardPlant {
         self.motors.map(|motor| motor.state)
     }
 
-    /// Which limit switches the carriage presses.
+    /// Limit switches that the carriage presses.
     #[must_use]
     pub fn limit_switches(&self) -> LimitSwitches {
         let (at, most) = (self.position_mm(), self.settings.most);

@@ -30,11 +30,12 @@ const GREATEST: f64 = 1e18;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ProfileError {
-    /// What was wrong: `length_mm`, `speed_mm_s`, `accel_mm_s2`, `jerk_mm_s3`, `entry_mm_s` or `exit_mm_s`.
+    /// Name of the quantity: `length_mm`, `speed_mm_s`, `accel_mm_s2`, `jerk_mm_s3`, `entry_mm_s` or
+    /// `exit_mm_s`.
     pub quantity: &'static str,
-    /// Its value.
+    /// Value of the quantity.
     pub value: f64,
-    /// The least it may be.
+    /// Least allowed value.
     pub least: f64,
     /// The most it may be.
     pub most: f64,

@@ -2,7 +2,7 @@
 
 use super::{GREATEST, LEAST_LIMIT, ProfileError, ProfilePoint, Ramp, within};
 
-/// What is asked of a [`Trapezoid`].
+/// Input of a [`Trapezoid`]: length and speeds of a move.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TrapezoidMove {
     /// How far, mm.
@@ -111,7 +111,7 @@ impl Trapezoid {
         self.length_mm
     }
 
-    /// Its greatest speed, mm/s.
+    /// Greatest speed of the profile, mm/s.
     #[must_use]
     pub const fn peak_mm_s(&self) -> f64 {
         self.peak_mm_s

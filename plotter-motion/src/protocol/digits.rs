@@ -70,7 +70,7 @@ pub fn encode(target: StepPoint) -> Result<[u8; TARGET_BYTES], OutOfRange> {
     Ok([a, b, c, d, e, f, g, h, i, j])
 }
 
-/// What a controller says in one byte.
+/// Replies of a controller, each in one byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Reply {
@@ -107,7 +107,7 @@ impl Reply {
         }
     }
 
-    /// What a byte says; `None` if it says nothing. The letters `a` to `d` mean the same as `1` to `4`.
+    /// Reply of a byte; `None` if it is none. The letters `a` to `d` mean the same as `1` to `4`.
     #[must_use]
     pub const fn from_byte(byte: u8) -> Option<Self> {
         Some(match byte {
@@ -173,10 +173,10 @@ impl fmt::Display for Dropped {
     }
 }
 
-/// What a byte told the receiver.
+/// Effect of a byte on the receiver.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Received {
-    /// What had to be dropped to go on, if anything.
+    /// Bytes that were dropped as damaged, if any.
     pub dropped: Option<Dropped>,
     /// The target that this byte completed, if it did.
     pub target: Option<StepPoint>,

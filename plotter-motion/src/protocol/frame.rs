@@ -28,15 +28,15 @@ pub const MOST_BYTES: usize = MOST_PAYLOAD + OVERHEAD;
 
 static CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_IBM_SDLC);
 
-/// What a frame is for.
+/// Kinds of frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Kind {
-    /// Who speaks, and which session begins.
+    /// Introduces the sender, and begins a session.
     Hello = b'H',
     /// Payload in order.
     Data = b'D',
-    /// What has come; the payload says what has come out of order.
+    /// Acknowledges payload up to a number; its own payload names what arrived out of order.
     Acknowledge = b'A',
     /// An order outside the streams, with a number of its own.
     Order = b'O',
@@ -57,7 +57,7 @@ impl Kind {
 /// A frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
-    /// What it is for.
+    /// Kind of the frame.
     pub kind: Kind,
     /// Number of its payload, modulo 256; 0 where it has no number.
     pub sequence: u8,
@@ -113,11 +113,11 @@ fn check(session: u16, bytes: &[u8]) -> u16 {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum DecodeError {
-    /// Its zero did not come in time: more bytes than the longest frame has.
+    /// The zero at its end is missing: more bytes have come than the longest frame has.
     TooLong,
     /// It is no COBS, too short, or not as long as it says.
     Malformed,
-    /// Its check is wrong: damaged, or of another session.
+    /// The checksum is wrong: the frame is damaged, or of another session.
     Check,
     /// A kind that this version does not know.
     Kind(u8),

@@ -1,13 +1,13 @@
-//! [`Hello`]: what either side of the reliable link says of itself before anything else.
+//! [`Hello`]: the first frame of either side of the reliable link.
 
-/// Who speaks.
+/// Introduction of either side of the reliable link.
 ///
 /// ```text
 ///   version   window   payload   reserved   session         capabilities
 ///   1         1        1         1 (0)      2, low first    4, low first
 /// ```
 ///
-/// Later versions may say more behind it; what comes after the first ten bytes is skipped.
+/// Later versions may be longer; bytes after the first ten are skipped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Hello {
     /// Greatest version of the link that the speaker knows; 1 is the first.
@@ -18,7 +18,7 @@ pub struct Hello {
     pub payload: u8,
     /// The session that the host opens, or that the machine is in; 0 for none.
     pub session: u16,
-    /// What else it can do, a bit each; the link itself knows none of them.
+    /// Further capabilities, a bit each; the link itself uses none of them.
     pub capabilities: u32,
 }
 

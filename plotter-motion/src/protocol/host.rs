@@ -38,7 +38,7 @@ impl Default for HostSettings {
     }
 }
 
-/// What a host noticed.
+/// Observations of a host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum HostNotice {
@@ -359,7 +359,7 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
     }
 }
 
-/// What happened at the host.
+/// Events at the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HostEvent {
     /// A move is about to be sent.

@@ -129,7 +129,7 @@ impl<I: Iterator<Item = PenMove>, const WINDOW: usize, const PAYLOAD: usize> Lin
         }
     }
 
-    /// What the machine says that it does.
+    /// State that the machine has reported.
     #[must_use]
     pub const fn state(&self) -> Order {
         self.state

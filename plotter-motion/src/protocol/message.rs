@@ -7,7 +7,7 @@ use super::Order;
 use crate::{Pen, StepPoint};
 use core::fmt;
 
-/// What is said.
+/// Messages over the link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Message {
@@ -41,7 +41,7 @@ pub enum Message {
     Stands {
         /// The last order taken in this session, by its number; 0 for none.
         order: u32,
-        /// What holds.
+        /// The order in force.
         state: Order,
     },
 }

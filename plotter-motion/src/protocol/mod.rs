@@ -1,4 +1,4 @@
-//! What goes over the serial line, sans-IO: bytes in, meaning out, and back.
+//! Protocols of the serial line, sans-IO: bytes to meaning and back.
 
 pub mod digits;
 pub mod ebb;

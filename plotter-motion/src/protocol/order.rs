@@ -35,7 +35,7 @@ impl Order {
         }
     }
 
-    /// What a byte orders; `None` if it is no order.
+    /// Order of a byte; `None` if it is none.
     #[must_use]
     pub const fn from_byte(byte: u8) -> Option<Self> {
         Some(match byte {

@@ -84,7 +84,7 @@ impl Duty {
     }
 }
 
-/// What a controller asks of both motors.
+/// Duties that a controller asks for, of both motors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Demand {

@@ -1,4 +1,4 @@
-//! What a gate has passed: [`Drive`], [`Pulse`] and [`Beam`]. Nothing else makes one.
+//! [`Drive`], [`Pulse`] and [`Beam`]: demands that a gate has passed. Nothing else makes one.
 
 use super::{Duty, SafetyGate};
 use crate::{Axis, StepPair};

@@ -10,17 +10,17 @@ use core::fmt;
 pub enum Blocked {
     /// The emergency stop is latched, or the host has stopped the machine.
     Stopped,
-    /// It leads into a pressed limit switch.
+    /// The motion leads into a pressed limit switch.
     Limit {
-        /// Of which axis.
+        /// Axis of the switch.
         axis: Axis,
-        /// At which of its ends.
+        /// End of that axis.
         end: Direction,
     },
     /// A step of a third motor leads into a pressed limit switch of its axis.
     #[cfg(feature = "third-motor")]
     LimitZ {
-        /// At which of its ends.
+        /// End of that axis.
         end: Direction,
     },
 }
@@ -41,7 +41,7 @@ impl fmt::Display for Blocked {
 
 impl core::error::Error for Blocked {}
 
-/// Which limit switches are pressed.
+/// Limit switches that are pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LimitSwitches {

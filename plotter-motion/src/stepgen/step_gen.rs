@@ -72,7 +72,7 @@ impl StepGenSettings {
     }
 }
 
-/// What the motors, the pen and the laser do.
+/// Events for the motors, the pen and the laser.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum MotorEvent {
@@ -96,7 +96,7 @@ pub enum MotorEvent {
 pub struct TimedEvent {
     /// Ticks of the clock since the start.
     pub tick: u64,
-    /// What happens.
+    /// The event.
     pub event: MotorEvent,
 }
 
@@ -450,8 +450,8 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
         self.due = None;
         while let Some(chord) = self.chords.next::<M>(&self.course, &self.kinematics) {
             self.line = Bresenham::new(self.line.position(), chord.to);
-            self.due = Due::new(self.chord_from, chord.end, self.line.remaining());
-            self.chord_from = chord.end;
+            self.due = Due::new(self.chord_from, chord.end_mm_q32, self.line.remaining());
+            self.chord_from = chord.end_mm_q32;
             if self.due.is_some() {
                 return;
             }

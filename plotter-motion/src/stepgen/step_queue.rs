@@ -9,7 +9,7 @@ use crate::StepPair;
 pub struct QueuedEvent {
     /// Ticks of the clock since the event before.
     pub after_ticks: u32,
-    /// What happens.
+    /// The event.
     pub event: MotorEvent,
 }
 

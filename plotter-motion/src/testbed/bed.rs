@@ -47,7 +47,7 @@ impl Default for TestBedSettings {
     }
 }
 
-/// What there is to see in a time step.
+/// State of a run at one time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     /// Time since the start.
@@ -61,7 +61,7 @@ pub struct Moment {
     pub pen: Point,
     /// The place of the line that is nearest to it, mm.
     pub nearest: Point,
-    /// Its distance from the line, mm.
+    /// Distance of the pen from the line, mm.
     pub error_mm: f64,
     /// Whether this is part of the drawing, and measured: the pen is down and has not arrived.
     pub is_measured: bool,

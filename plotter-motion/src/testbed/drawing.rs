@@ -12,7 +12,7 @@ use alloc::vec::Vec;
 /// Moves with a name, from the origin on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
-    /// What it is called in tables.
+    /// Name in tables.
     pub name: String,
     /// The moves, in encoder counts.
     pub moves: Vec<PenMove>,

@@ -70,7 +70,7 @@ impl Entry {
         Self { name: name.into(), practice, make }
     }
 
-    /// Its name.
+    /// Name of the entry, as in tables.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
@@ -148,7 +148,7 @@ fn point_to_point(machine: &Machine) -> PointToPointSettings {
     }
 }
 
-/// What came of an entry on a machine: each drawing with its figures.
+/// Results of an entry on a machine: each drawing with its figures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Score {
     /// The entry's name.

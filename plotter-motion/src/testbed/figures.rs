@@ -1,14 +1,14 @@
-//! [`Figures`]: what came of a run.
+//! [`Figures`]: errors, time and energy of a run.
 
 use super::Moment;
 use core::time::Duration;
 
-/// What came of a run, or of several.
+/// Figures of a run, or of several added up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Figures {
     /// Sum of the squares of the pen's distance from the line, mm^2, over all measured time steps.
     pub square_mm2: f64,
-    /// How many they were.
+    /// Number of measured time steps.
     pub samples: u64,
     /// Greatest distance, mm.
     pub max_mm: f64,

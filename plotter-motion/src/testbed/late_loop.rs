@@ -27,7 +27,7 @@ pub struct LateLoop {
     pub late: Duration,
     /// How rare such a run is; 0 for never.
     pub one_in: u32,
-    /// What the times depend on.
+    /// Seed of the times.
     pub seed: u64,
 }
 

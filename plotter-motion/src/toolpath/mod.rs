@@ -1,5 +1,5 @@
-//! [`PlotOp`]: what every front end (vectorizer, HPGL, G-code) emits and every back end (controller, writer,
-//! splitter, canvas) takes.
+//! [`PlotOp`]: the operations that every front end (vectorizer, HPGL, G-code) emits and every back end
+//! (controller, writer, splitter, canvas) takes.
 
 pub(crate) mod chords;
 pub(crate) mod shapes;
@@ -23,20 +23,20 @@ pub enum Pen {
     Down,
 }
 
-/// A straight move of both motors to a target, with the pen up or down: what a drawing becomes for a
-/// controller that takes targets one by one.
+/// A straight move of both motors to a target, with the pen up or down, for a controller that takes targets
+/// one by one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PenMove {
     /// The pen during the move.
     pub pen: Pen,
-    /// Where to, encoder counts or steps.
+    /// Target, encoder counts or steps.
     pub target: StepPoint,
 }
 
 impl PenMove {
-    /// The movement of a plot operation; `None` for one that is no straight move: an arc becomes straight
-    /// moves with [`chords`]. Rounds as [`from_mm`] does.
+    /// The move of a plot operation; `None` for one that is not a straight move. An arc becomes straight
+    /// moves by [`chords`]. Rounds as [`from_mm`] does.
     ///
     /// ```
     /// # use plotter_motion::{Pen, PenMove, PlotOp, Point, StepPoint};
@@ -55,7 +55,7 @@ impl PenMove {
         Some(Self { pen, target: StepPoint::new(from_mm(to.x, counts_per_mm), from_mm(to.y, counts_per_mm)) })
     }
 
-    /// The same movement in mm. `counts_per_mm` must be finite and not 0.
+    /// The same move in mm. `counts_per_mm` must be finite and not 0.
     #[must_use]
     pub fn to_op(self, counts_per_mm: f64) -> PlotOp {
         let to =
@@ -67,11 +67,11 @@ impl PenMove {
     }
 }
 
-/// One thing for a plotter to do. All coordinates are absolute, in mm on the sheet.
+/// An operation of a plotter. All coordinates are absolute, in mm on the sheet.
 ///
 /// Before the first operation the pen is up at the origin. After the last one it is lifted where it stands:
 /// whatever takes operations does so at its end ([`Planner::finish`](crate::Planner::finish), `finish` of the
-/// writers), so no drawing needs an operation for it. A travel to where the pen stands lifts it before.
+/// writers), so no drawing needs an operation for it. A travel to the pen's position lifts it earlier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
@@ -80,33 +80,33 @@ impl PenMove {
 pub enum PlotOp {
     /// Lifts the pen and moves, without a mark.
     Travel {
-        /// Where to.
+        /// Target, mm.
         to: Point,
     },
-    /// Lowers the pen and draws a straight line. A line to where the pen stands is a dot.
+    /// Lowers the pen and draws a straight line. A line to the pen's position is a dot.
     Draw {
-        /// Where to.
+        /// Target, mm.
         to: Point,
         /// Speed along the line, mm/s; `None` leaves the choice to the machine.
         feed_mm_s: Option<f64>,
     },
     /// Lowers the pen and draws an arc of a circle from where the pen stands.
     ///
-    /// The pen ought to stand as far from the centre as `to` lies; where it does not, the radius changes
-    /// evenly along the way.
+    /// The pen should be as far from the centre as `to` is; otherwise the radius changes linearly along the
+    /// arc.
     DrawArc {
-        /// Centre of the circle.
+        /// Centre of the circle, mm.
         centre: Point,
-        /// How far round, rad: counter-clockwise above 0; at most a whole turn, ±2π.
+        /// Angle of the arc, rad: positive counter-clockwise; at most a whole turn, ±2π.
         sweep_rad: f64,
-        /// Where it ends: where the pen stands, turned about the centre by the sweep.
+        /// End of the arc, mm: the pen's position, turned about the centre by the sweep.
         to: Point,
         /// Speed along the arc, mm/s; `None` leaves the choice to the machine.
         feed_mm_s: Option<f64>,
     },
-    /// Power of a laser from here on, while it draws; a pen does not mind.
+    /// Sets the power of a laser for everything drawn from here on; a pen ignores it.
     LaserPower {
-        /// Share of its full power, 0 to 1.
+        /// Fraction of full power, 0 to 1.
         share: f64,
     },
     /// Takes another pen; 0 puts the pen away.
@@ -114,17 +114,17 @@ pub enum PlotOp {
         /// Number in the carousel, from 1.
         pen: u8,
     },
-    /// Stands still.
+    /// Waits.
     Dwell {
-        /// How long.
+        /// Length of the wait.
         duration: Duration,
     },
-    /// A new sheet.
+    /// Changes the sheet.
     NewPage,
 }
 
 impl PlotOp {
-    /// Where this operation takes the pen, if it moves it.
+    /// Target of the operation; `None` if it does not move the pen.
     #[must_use]
     pub fn target(self) -> Option<Point> {
         match self {

@@ -9,9 +9,9 @@ use core::fmt;
 /// A point that a machine cannot reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutOfReach {
-    /// Which operation of the tool path, from 0.
+    /// Number of the operation in the tool path, from 0.
     pub index: usize,
-    /// Its point, mm.
+    /// The target in mm.
     pub point: Point,
     /// The axis on which it lies outside.
     pub axis: Axis,

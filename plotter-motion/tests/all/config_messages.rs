@@ -1,4 +1,4 @@
-//! What a person reads when his machine's file is wrong.
+//! Error messages for a machine's file that is wrong.
 #![cfg(feature = "toml")]
 
 use insta::assert_snapshot;

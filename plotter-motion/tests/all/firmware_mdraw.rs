@@ -1,4 +1,7 @@
-//! Whole conversations with mDraw, byte for byte.
+//! Whole conversations with mDraw, the host program of Makeblock's XY plotter, byte for byte.
+//!
+//! "The original" is that plotter's own firmware. The module `firmware::stepper_plotter` describes the
+//! protocol.
 
 use crate::stepper_bench;
 
@@ -7,7 +10,8 @@ use plotter_motion::firmware::stepper_plotter::{Activity, StepperPlotterSettings
 use plotter_motion::{Axis, Direction, StepPoint};
 use stepper_bench::Bench;
 
-/// `>` what mDraw sends, `<` what it is answered, `-` where the machine is then.
+/// A conversation as text: `>` what mDraw sends, `<` the answer, `-` the state afterwards: the position in
+/// steps and the servo's angle in degrees.
 fn conversation(bench: &mut Bench, lines: &[&str]) -> String {
     let mut text = String::new();
     for line in lines {
@@ -22,20 +26,20 @@ fn conversation(bench: &mut Bench, lines: &[&str]) -> String {
     text
 }
 
-fn bench() -> Bench {
+fn new_bench() -> Bench {
     Bench::new(StepperPlotterSettings::default())
 }
 
 #[test]
 fn moves_report_their_distance() {
     insta::assert_snapshot!(conversation(
-        &mut bench(),
+        &mut new_bench(),
         &[
             "G1 X10.00 Y5.00\n",
             "G0 X10.00 Y5.00\n",    // nothing to do: 0.00 even so
             "G1 X10.0005 Y5\n",     // less than 0.001 mm
             "G1 X13 A200\n",        // y stays
-            "G1 Y9 Z3 F600 A0\r\n", // Z and F mean nothing, CR neither
+            "G1 Y9 Z3 F600 A0\r\n", // Z, F and CR are ignored
             "G1\n",                 // to where it is
             "P\n",
         ]
@@ -43,24 +47,24 @@ fn moves_report_their_distance() {
 }
 
 #[test]
-fn places_may_be_ways_from_where_the_pen_is() {
-    let mut bench = bench();
-    let said = ["G1 X10 Y5\n", "G91\n", "G1 X2.5\n", "G1 X-1 Y3\n", "P\n", "G90\n", "G1 X1\n", "P\n"]
+fn g91_makes_coordinates_relative() {
+    let mut bench = new_bench();
+    let answers = ["G1 X10 Y5\n", "G91\n", "G1 X2.5\n", "G1 X-1 Y3\n", "P\n", "G90\n", "G1 X1\n", "P\n"]
         .map(|line| bench.ask(line));
-    assert_eq!(said[1], "OK\r\n");
-    assert_eq!(said[2], "distance=2.50\r\nOK\r\n");
-    assert_eq!(said[4], "POS X11.50 Y8.00\r\nOK\r\n");
-    assert_eq!(said[7], "POS X1.00 Y8.00\r\nOK\r\n");
-    // What lies outside is refused, however it is said, and the pen stays.
+    assert_eq!(answers[1], "OK\r\n");
+    assert_eq!(answers[2], "distance=2.50\r\nOK\r\n");
+    assert_eq!(answers[4], "POS X11.50 Y8.00\r\nOK\r\n");
+    assert_eq!(answers[7], "POS X1.00 Y8.00\r\nOK\r\n");
+    // A target outside is refused in relative coordinates too, and the pen stays.
     bench.ask("G91\n");
     assert!(bench.ask("G1 X-1.5\n").starts_with("error: "));
-    assert_eq!(bench.ask("P\n"), said[7]);
+    assert_eq!(bench.ask("P\n"), answers[7]);
 }
 
 #[test]
 fn pen_laser_delay_and_stored_settings_are_answered_by_ok_alone() {
     insta::assert_snapshot!(conversation(
-        &mut bench(),
+        &mut new_bench(),
         &[
             "M1 90\n",
             "M1 160\n",
@@ -76,14 +80,14 @@ fn pen_laser_delay_and_stored_settings_are_answered_by_ok_alone() {
 
 #[test]
 fn reports_have_the_format_that_mdraw_reads() {
-    let mut bench = bench();
+    let mut bench = new_bench();
     bench.ask("G1 X123.456 Y7.125\n");
     insta::assert_snapshot!(conversation(&mut bench, &["M10\n", "M11\n", "P\n"]));
 }
 
 #[test]
-fn end_stops_are_told_in_their_order_and_1_is_open() {
-    let mut bench = bench();
+fn m11_reports_y_max_y_min_x_max_x_min_and_1_is_open() {
+    let mut bench = new_bench();
     bench.switches = false;
     let mut text = String::new();
     for (axis, end) in [
@@ -102,7 +106,7 @@ fn end_stops_are_told_in_their_order_and_1_is_open() {
 #[test]
 fn unknown_and_malformed_lines_are_answered_by_one_ok() {
     insta::assert_snapshot!(conversation(
-        &mut bench(),
+        &mut new_bench(),
         &[
             "\n",
             "\r\n",
@@ -125,18 +129,18 @@ fn unknown_and_malformed_lines_are_answered_by_one_ok() {
 }
 
 #[test]
-fn what_the_original_does_wrong_is_refused_and_nothing_moves() {
-    let mut bench = bench();
+fn lines_the_original_firmware_misreads_are_refused_and_nothing_moves() {
+    let mut bench = new_bench();
     bench.ask("G1 X1 Y1\n");
     let long = format!("G1 X10 Y10 {}\n", "A0 ".repeat(20));
     insta::assert_snapshot!(conversation(
         &mut bench,
         &[
-            &long,             // 64 bytes: wraps there
+            &long,             // longer than 64 bytes: the original's buffer wraps
             "G1 X380.01 Y1\n", // beyond the area
             "G1 X-0.01\n",
             "G1 X99999999999999999999999999999999999999999 Y1\n",
-            "G1 X Y5\n", // C reads 0
+            "G1 X Y5\n", // no number: the original's `atof` reads 0
             "M1\n",
             "M1 181\n",
             "M4 256\n",
@@ -152,17 +156,17 @@ fn what_the_original_does_wrong_is_refused_and_nothing_moves() {
     assert_eq!(bench.plotter.position(), StepPoint::new(88, 88));
 }
 
-/// The original counts its steps in 16 bits: 32,767 / 87.58 = 374.14 mm.
+/// The original counts steps in 16 bits, which overflow beyond 32,767 / 87.58 = 374.14 mm. Ours do not.
 #[test]
 fn the_whole_width_is_reached() {
-    let mut bench = bench();
+    let mut bench = new_bench();
     assert_eq!(bench.ask("G1 X380 Y0\n"), "distance=380.00\r\nOK\r\n");
     assert_eq!(bench.plotter.position(), StepPoint::new(33_280, 0)); // 380 * 87.58 = 33,280.4
 }
 
 #[test]
-fn a_line_before_the_answer_is_refused_in_its_turn_and_the_move_ends_where_it_should() {
-    let mut bench = bench();
+fn a_line_sent_before_the_answer_is_refused_and_the_move_is_finished() {
+    let mut bench = new_bench();
     bench.send("G1 X50 Y0\n");
     bench.run_for(Duration::from_millis(500));
     bench.send("G1 X0 Y50\nP\n");
@@ -175,7 +179,7 @@ fn a_line_before_the_answer_is_refused_in_its_turn_and_the_move_ends_where_it_sh
 
 #[test]
 fn ok_comes_when_the_move_is_complete() {
-    let mut bench = bench();
+    let mut bench = new_bench();
     bench.send("G1 X20 Y0\n");
     bench.run_out();
     let last = bench.made.last().unwrap().at;
@@ -186,14 +190,14 @@ fn ok_comes_when_the_move_is_complete() {
 
 #[test]
 fn the_motors_wait_until_the_pen_has_settled_and_m1_is_answered_before() {
-    let mut bench = bench();
+    let mut bench = new_bench();
     bench.send("M1 90\n");
     assert_eq!(bench.take_answers(), "OK\r\n");
     assert_eq!(bench.plotter.pen_deg(), 90);
     bench.send("G1 X1 Y0\n");
     bench.run_out();
     assert!(bench.made[0].at >= Duration::from_millis(200), "{:?}", bench.made[0].at);
-    // And not once more where mDraw has waited itself.
+    // mDraw waits by itself, too: the controller does not wait a second time.
     bench.send("M1 160\n");
     bench.run_for(Duration::from_millis(200));
     let (began, count) = (bench.now, bench.made.len());
@@ -204,7 +208,7 @@ fn the_motors_wait_until_the_pen_has_settled_and_m1_is_answered_before() {
 #[test]
 fn the_delay_of_a_step_slows_it_down() {
     let seconds = |delay: &str| {
-        let mut bench = bench();
+        let mut bench = new_bench();
         bench.ask(delay);
         let began = bench.now;
         bench.ask("G1 X100 Y0\n");
@@ -218,23 +222,23 @@ fn the_delay_of_a_step_slows_it_down() {
 
 #[test]
 fn homing_finds_the_origin_with_the_pen_up() {
-    let mut bench = bench();
+    let mut bench = new_bench();
     bench.carriage = [7_000, 12_345];
     let text = conversation(&mut bench, &["M1 90\n", "M3 500\n", "G28\n", "P\n", "M1 90\n", "G1 X1 Y0\n"]);
-    assert_eq!(bench.carriage, [88 + 88, 88]); // a millimetre off the switches
+    assert_eq!(bench.carriage, [88 + 88, 88]); // 88 steps, a millimetre, off the switches, and the 88 of `G1 X1`
     insta::assert_snapshot!(text);
 }
 
 #[test]
 fn homing_that_fails_says_why() {
-    let mut bench = bench();
+    let mut bench = new_bench();
     bench.switches = false;
     insta::assert_snapshot!(conversation(&mut bench, &["G28\n", "G1 X1 Y1\n"]));
 }
 
 #[test]
 fn an_emergency_stop_ends_the_line_and_refuses_the_next_until_it_is_reset() {
-    let mut bench = bench();
+    let mut bench = new_bench();
     bench.ask("M1 90\n");
     bench.send("G1 X100 Y50\n");
     bench.run_for(Duration::from_millis(1_000));
@@ -256,7 +260,7 @@ fn an_emergency_stop_ends_the_line_and_refuses_the_next_until_it_is_reset() {
 
 #[test]
 fn an_emergency_stop_while_homing_ends_it() {
-    let mut bench = bench();
+    let mut bench = new_bench();
     bench.send("G28\n");
     bench.run_for(Duration::from_millis(100));
     bench.stop_button(true);
@@ -269,15 +273,15 @@ fn an_emergency_stop_while_homing_ends_it() {
 
 #[test]
 fn a_limit_switch_ends_the_move_and_away_from_it_is_free() {
-    let mut bench = bench();
+    let mut bench = new_bench();
     bench.length = [2_000, 28_000];
     let text = conversation(&mut bench, &["G1 X100 Y3\n", "P\n", "G1 X101 Y0\n", "G1 X0 Y0\n", "G28\n"]);
     insta::assert_snapshot!(text);
 }
 
 #[test]
-fn what_is_stored_holds_after_the_port_has_been_opened_anew() {
-    let mut bench = bench();
+fn stored_settings_take_effect_when_the_port_is_opened_again() {
+    let mut bench = new_bench();
     bench.ask("M5 A1 B0 H200 W300 S50\n");
     bench.ask("M2 U130 D20\n");
     assert_eq!(bench.ask("G1 X310 Y0\n"), "distance=310.00\r\nOK\r\n", "not yet");
@@ -306,18 +310,19 @@ fn what_is_stored_holds_after_the_port_has_been_opened_anew() {
 }
 
 #[test]
-fn a_laser_burns_in_moves_only_and_as_strongly_as_it_is_fast() {
+fn laser_power_follows_speed_and_is_off_at_rest() {
     let mut bench = Bench::new(StepperPlotterSettings { laser: true, ..Default::default() });
-    bench.ask("G1 X10 Y10\nM4 255\n"); // (the second is too early)
+    bench.ask("G1 X10 Y10\nM4 255\n"); // M4 is sent before the move was answered, so it is refused
     bench.ask("M4 255\n");
-    assert_eq!(bench.plotter.beam().power(), 0, "it stands");
+    assert_eq!(bench.plotter.beam().power(), 0, "off at standstill");
     let count = bench.made.len();
     assert!(bench.made.iter().all(|made| made.laser == 0));
     bench.ask("G1 X60 Y10\n");
     let burnt = &bench.made[count..];
-    assert!(burnt[10].laser < burnt[2_000].laser && burnt[2_000].laser > 0xFE00, "{:?}", burnt[2_000]);
+    let (starting, cruising) = (burnt[10].laser, burnt[2_000].laser);
+    assert!(starting < cruising && cruising > 0xFE00, "nearly full power: {:?}", burnt[2_000]);
     assert_eq!(bench.plotter.beam().power(), 0);
-    // mDraw's stop button does not wait.
+    // mDraw's stop button sends M4 0 without waiting for the answer.
     bench.send("G1 X10 Y10\n");
     bench.run_for(Duration::from_millis(400));
     assert!(bench.plotter.beam().power() > 0);
@@ -329,9 +334,9 @@ fn a_laser_burns_in_moves_only_and_as_strongly_as_it_is_fast() {
 }
 
 #[test]
-fn a_line_with_a_broken_byte_is_refused_and_the_next_one_is_drawn() {
-    // X1 and X12 are both good lines: what was between them must not be guessed.
-    insta::assert_snapshot!(conversation(&mut bench(), &["G1 X1\u{1a}2 Y5\n", "G1 X12 Y5\n"]), @r"
+fn a_line_with_a_damaged_byte_is_refused_and_the_next_one_is_drawn() {
+    // X1 and X12 are both good lines: the controller must not guess the damaged byte.
+    insta::assert_snapshot!(conversation(&mut new_bench(), &["G1 X1\u{1a}2 Y5\n", "G1 X12 Y5\n"]), @r"
     > G1 X1\u{1a}2 Y5\n
     < error: a byte of this line came broken: left out\r\n
     < OK\r\n

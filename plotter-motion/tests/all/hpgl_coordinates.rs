@@ -1,4 +1,4 @@
-//! What coordinates mean: `IP`, `IR`, `SC`, `RO`, `PS`, and the window `IW`.
+//! The meaning of coordinates: `IP`, `IR`, `SC`, `RO`, `PS`, and the window `IW`.
 
 use crate::shown;
 

@@ -1,4 +1,4 @@
-//! What is for cutters: the one-letter languages CAMM-GL and GP-GL, and what cutters' programs write into
+//! Languages of cutters: the one-letter languages CAMM-GL and GP-GL, and what cutters' programs write into
 //! HPGL.
 
 use crate::shown;

@@ -1,4 +1,4 @@
-//! What a build script writes for a firmware: it is compiled here, and is what the machine's file says.
+//! Constants that a build script writes for a firmware: compiled here, they equal the machine's file.
 //!
 //! The texts lie in `tests/data/machine_constants`; `UPDATE_GOLDEN=1` writes them anew.
 

@@ -1,4 +1,4 @@
-//! What people read when something is wrong.
+//! Error messages, as people read them.
 
 use core::time::Duration;
 use plotter_motion::firmware::Notice;

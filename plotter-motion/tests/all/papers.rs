@@ -1,4 +1,4 @@
-//! What papers claim in tables, so that the tests that measure it can say that it is still so.
+//! Tables of papers, for the tests that measure whether they still hold.
 
 /// The cells of the row of a paper that begins with these words, without the first; `None` in a package,
 /// which has no papers of the family, with a word.

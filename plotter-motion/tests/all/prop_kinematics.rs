@@ -1,4 +1,4 @@
-//! Laws of the way from millimetres to motors and back.
+//! Laws of the conversion from millimetres to motor steps and back.
 
 use plotter_motion::kinematics::{
     Backlash, BacklashState, BeltSigns, Cartesian, CoreXy, Kinematics, MotorScale,
@@ -6,9 +6,10 @@ use plotter_motion::kinematics::{
 use plotter_motion::{Axis, Direction, Point, StepPoint};
 use proptest::prelude::*;
 
-/// Two roundings, of a product and of a quotient, as a share.
+/// Greatest relative error of two roundings, of a product and of a quotient.
 const LAST_BITS: f64 = 2.0 * f64::EPSILON;
 
+/// From 1.3e-9 to 7.9e8 steps per millimetre: the range that is accepted.
 fn scale() -> impl Strategy<Value = MotorScale> {
     (-8.9..8.9_f64, any::<bool>())
         .prop_map(|(decade, inverted)| MotorScale { steps_per_mm: 10.0_f64.powf(decade), inverted })
@@ -22,7 +23,7 @@ fn signs() -> impl Strategy<Value = BeltSigns> {
     prop_oneof![Just(BeltSigns::DirectionTable), Just(BeltSigns::TrackingEquations)]
 }
 
-/// An axis with play, as a machine has it: the motor moves a gap, the carriage lies between its two flanks.
+/// A simulated axis with play: the motor moves a gap, and the carriage lies between its two flanks.
 struct AxisWithPlay {
     motor: i32,
     carriage: i32,
@@ -32,10 +33,10 @@ struct AxisWithPlay {
 }
 
 impl AxisWithPlay {
-    /// With the motor pressing on the carriage in `driven`, both at `at`.
+    /// Motor and carriage are at `at`, and the motor presses on the carriage in the direction `driven`.
     fn new(at: i32, driven: Direction, play: u16) -> Self {
         let play = i32::from(play);
-        // Driven forwards the carriage is at the rear flank, and the gap lies ahead of the motor's way back.
+        // Driven forwards, the carriage touches the rear flank, so all of the gap lies ahead of it.
         let (behind, ahead) = if driven == Direction::Plus { (0, play) } else { (play, 0) };
         Self { motor: at, carriage: at, behind, ahead }
     }
@@ -52,30 +53,30 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn a_place_survives_the_way_to_the_motors_and_back(scales in (scale(), scale()), x in -1e6..1e6_f64, y in -1e6..1e6_f64) {
+    fn a_point_survives_conversion_to_motors_and_back(scales in (scale(), scale()), x in -1e6..1e6_f64, y in -1e6..1e6_f64) {
         let machine = Cartesian::new(scales.0, scales.1).unwrap();
         let back = machine.point_at(machine.motors_at(Point::new(x, y)));
         prop_assert!((back.x - x).abs() <= LAST_BITS * x.abs() && (back.y - y).abs() <= LAST_BITS * y.abs());
     }
 
     #[test]
-    fn steps_survive_the_way_to_the_sheet_and_back(scales in (scale(), scale()), x in any::<i32>(), y in any::<i32>()) {
+    fn steps_survive_conversion_to_the_sheet_and_back(scales in (scale(), scale()), x in any::<i32>(), y in any::<i32>()) {
         let machine = Cartesian::new(scales.0, scales.1).unwrap();
         let steps = StepPoint::new(x, y);
         prop_assert_eq!(machine.steps_at(machine.point_at(steps.into())), steps);
     }
 
     #[test]
-    fn a_place_survives_the_way_over_a_belt(signs in signs(), scale in scale(), x in -1e6..1e6_f64, y in -1e6..1e6_f64) {
+    fn a_point_survives_conversion_by_a_belt(signs in signs(), scale in scale(), x in -1e6..1e6_f64, y in -1e6..1e6_f64) {
         let machine = CoreXy::new(signs, scale.steps_per_mm).unwrap();
         let back = machine.point_at(machine.motors_at(Point::new(x, y)));
-        // the motors' sums are rounded at the size of the larger coordinate
+        // The sums of both coordinates are rounded by the size of the larger one.
         let rounding = 2.0 * LAST_BITS * x.abs().max(y.abs());
         prop_assert!((back.x - x).abs() <= rounding && (back.y - y).abs() <= rounding, "{:?}", back);
     }
 
     #[test]
-    fn steps_survive_the_way_over_a_belt(signs in signs(), scale in scale(), first in any::<i32>(), second in any::<i32>()) {
+    fn steps_survive_conversion_by_a_belt(signs in signs(), scale in scale(), first in any::<i32>(), second in any::<i32>()) {
         let machine = CoreXy::new(signs, scale.steps_per_mm).unwrap();
         let steps = StepPoint::new(first, second);
         prop_assert_eq!(machine.steps_at(machine.point_at(steps.into())), steps);
@@ -85,7 +86,7 @@ proptest! {
     }
 
     #[test]
-    fn the_carriage_of_an_axis_with_play_ends_where_it_should(
+    fn the_carriage_of_an_axis_with_play_ends_on_its_target(
         start in -1_000..1_000_i32, x in 0..200_u16, y in 0..200_u16, driven in (direction(), direction()),
         targets in prop::collection::vec((-1_500..1_500_i32, -1_500..1_500_i32), 1..40),
     ) {
@@ -100,7 +101,7 @@ proptest! {
                 axis.step_to(axis.motor + extra);
             }
             prop_assert_eq!([axes[0].carriage, axes[1].carriage], before, "extra steps move no carriage");
-            // From here on a step of a motor is a step of its carriage.
+            // Play is taken up: from here on each step of a motor moves its carriage.
             let motor = takeup.motor;
             prop_assert_eq!((motor.x - axes[0].motor, motor.y - axes[1].motor), (x - before[0], y - before[1]));
             axes[0].step_to(motor.x);
@@ -110,9 +111,9 @@ proptest! {
         }
     }
 
-    /// At the ends of 32 bits nothing overflows.
+    /// Targets may lie at the ends of the range of 32 bits.
     #[test]
-    fn any_targets_are_survived(targets in prop::collection::vec(any::<(i32, i32)>(), 1..20), play in any::<u16>()) {
+    fn no_target_overflows(targets in prop::collection::vec(any::<(i32, i32)>(), 1..20), play in any::<u16>()) {
         let settings = Backlash { x_steps: play, y_steps: play };
         let mut state = BacklashState::default();
         for (x, y) in targets {
@@ -124,7 +125,7 @@ proptest! {
 }
 
 #[test]
-fn scales_are_refused_by_axis() {
+fn a_bad_scale_is_refused_with_its_axis() {
     let (good, bad) = (MotorScale::default(), MotorScale { steps_per_mm: 0.0, inverted: true });
     assert_eq!(Cartesian::new(bad, bad).unwrap_err().axis, Axis::X);
     assert_eq!(Cartesian::new(good, bad).unwrap_err().axis, Axis::Y);

@@ -1,4 +1,4 @@
-//! What a machine keeps, as bytes: written and read again, damaged, of another version, or anything at all.
+//! Stored settings as bytes: written and read again, damaged, of another version, or anything at all.
 
 use crc::{CRC_16_IBM_SDLC, Crc};
 use plotter_motion::firmware::stepper_plotter::StoredError;

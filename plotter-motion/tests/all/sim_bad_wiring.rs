@@ -1,4 +1,4 @@
-//! What breaks on a machine while it draws: it is noticed, told, and never runs away.
+//! Wires that break while a machine draws: the fault is noticed and reported, and no motor runs away.
 
 #![cfg(feature = "toml")]
 

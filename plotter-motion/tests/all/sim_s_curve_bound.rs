@@ -1,4 +1,4 @@
-//! How quick a jerk-limited motion along a planned path could be at all.
+//! Lower bound on the time of a jerk-limited motion along a planned path.
 //!
 //! Between two places that are passed at no more than V₁ and V₂ with the accelerations a₁ and a₂, a motion
 //! whose jerk is within ±J covers in the time T no more than one with the jerk +J, −J, +J: the distance is

@@ -1,4 +1,4 @@
-//! Where a log begins, and how its pen is lifted: looked up before it is drawn.
+//! Start position and pen of a log, looked up before it is drawn.
 
 use super::commands::open;
 use crate::log::{Event, Header};

@@ -21,13 +21,13 @@ pub(crate) struct Check {
     /// The machine's description [default: the preset of the controller that the log's header names].
     #[arg(long, value_name = "FILE.toml")]
     machine: Option<PathBuf>,
-    /// How far the time of an answer may be off, microseconds [default: 0; for a log without edges 50000, or
+    /// Tolerance for the time of an answer, microseconds [default: 0; for a log without edges 50000, or
     /// 1000000 if it is one of frames].
     #[arg(long, value_name = "US")]
     tolerance_us: Option<u64>,
 }
 
-/// A log that a controller is to be run on again.
+/// A log on which a controller is run again.
 pub(crate) struct Rerunnable {
     pub(crate) contents: Contents,
     header: Header,
@@ -70,7 +70,7 @@ impl Rerunnable {
             .map_err(|error| format!("{}: {error} (--machine)", self.log.display()))
     }
 
-    /// Which controller that is, and by what it was chosen.
+    /// Name of the controller, and the reason for which it was chosen.
     fn which(&self) -> String {
         let protocol = self.header.text("protocol").unwrap_or("digits");
         match (&self.machine, self.header.text("controller"), AnyController::named(&self.header)) {
@@ -87,12 +87,12 @@ impl Rerunnable {
         }
     }
 
-    /// How it is run again.
+    /// Settings of the run.
     pub(crate) fn settings(&self, controller: &dyn Controller) -> PlayerSettings {
         self.traits.settings(&self.header, controller.makes_steps())
     }
 
-    /// Its records, from the beginning.
+    /// The records of the log, from the beginning.
     pub(crate) fn records(&self) -> impl Iterator<Item = Record> + use<> {
         open(&self.log).into_iter().flatten().filter_map(Result::ok)
     }

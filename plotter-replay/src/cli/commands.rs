@@ -18,7 +18,7 @@ use std::time::Duration;
 pub(crate) const MOST_SHOWN: usize = 20;
 /// Longest machine file that is read, bytes; a good one has a few thousand.
 pub(crate) const MOST_MACHINE_BYTES: u64 = 1 << 20;
-/// What was found.
+/// Findings, which decide on the exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
     /// Nothing wrong.
@@ -33,7 +33,7 @@ impl Verdict {
     }
 }
 
-/// What to do.
+/// The commands.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Draw what the motors did, desired beside actual, and their response over time.
@@ -48,18 +48,19 @@ pub(crate) enum Command {
     #[command(after_help = "Example: plotter-replay replay session.plog --speed 1 --skip-gaps 0.5\n\
         shows the session as fast as it was, without its pauses")]
     Replay(Replay),
-    /// Compare two logs byte by byte: the first difference, what is round it, and all others in numbers.
+    /// Compare two logs byte by byte: the first difference with its surroundings, and the number of all
+    /// others.
     #[command(after_help = "Example: plotter-replay compare before.plog after.plog --tolerance-us 1000")]
     Compare(Compare),
     /// Record a serial line between a host program and a plotter.
     #[command(after_help = "Example: plotter-replay record --port auto --pty plotter -o session.plog\n\
         then let the host program open the port ./plotter; Ctrl-C ends the recording")]
     Record(Record),
-    /// Make a log of what another tool recorded.
+    /// Convert a recording by another tool to a log.
     #[command(after_help = "Example: plotter-replay import capture.txt -o session.plog\n\
         plotter-replay import --from sigrok --host tx.txt --controller rx.txt -o session.plog")]
     Import(Import),
-    /// Write a log as a table, as text with what it says, or as MCAP for Foxglove.
+    /// Write a log as a table, as text with the meaning of each record, or as MCAP for Foxglove.
     #[command(after_help = "Example: plotter-replay export session.plog --to csv -o session.csv")]
     Export(Export),
     /// Drive or watch a machine, real or simulated, in a browser or this terminal, and record it.
@@ -78,11 +79,11 @@ pub(crate) enum Command {
     #[cfg(not(feature = "live"))]
     #[command(disable_help_flag = true)]
     Live {
-        /// What it would have been given.
+        /// The arguments, which are ignored.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
-    /// Say what a log holds, its rates and gaps, and what of it is damaged or odd.
+    /// Summarize a log: its contents, rates and gaps, and what is damaged or does not fit.
     #[command(after_help = "Example: plotter-replay info session.plog.gz")]
     Info(Info),
 }
@@ -115,16 +116,16 @@ impl Command {
         })
     }
 
-    /// Whether a file goes to the standard output, which is then no place for words.
+    /// Whether a file goes to the standard output, so that no words may go there.
     pub(crate) fn prints_file(&self) -> bool {
         matches!(self, Self::Export(export) if export.prints_file())
     }
 
-    /// Does it.
+    /// Runs the command.
     ///
     /// # Errors
     ///
-    /// One line that says what cannot be read or written.
+    /// One line that names the file that cannot be read or written, and why.
     pub(crate) fn run(self, out: &mut impl Write) -> Done {
         match self {
             Self::Render(render) => render.run(out),
@@ -212,7 +213,7 @@ pub(crate) fn cannot(be: &str, path: &Path, error: &std::io::Error) -> String {
     format!("{}: cannot be {be}: {error}", path.display())
 }
 
-/// All of a file, if it has at most `most_bytes`: a device may go on for ever.
+/// A whole file, if it has at most `most_bytes`: a device may never end.
 pub(crate) fn read_file(path: &Path, most_bytes: u64) -> Result<Vec<u8>, String> {
     let refused = |error: std::io::Error| cannot("read", path, &error);
     let mut bytes = Vec::new();
@@ -224,13 +225,13 @@ pub(crate) fn read_file(path: &Path, most_bytes: u64) -> Result<Vec<u8>, String>
     Ok(bytes)
 }
 
-/// Seconds as people give them.
+/// Seconds, as given on the command line.
 pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text.parse().map_err(|_| format!("expected seconds, found {text:?}"))?;
     Duration::try_from_secs_f64(seconds).map_err(|_| format!("expected 0 or more seconds, found {text:?}"))
 }
 
-/// Refuses to write over a file that is there.
+/// Refuses to overwrite an existing file.
 pub(crate) fn is_free(path: &Path, force: bool) -> Result<(), String> {
     let is_file = std::fs::metadata(path).is_ok_and(|meta| meta.is_file() && meta.len() > 0);
     if is_file && !force {

@@ -13,7 +13,7 @@ pub(crate) struct Compare {
     first: PathBuf,
     /// The second log.
     second: PathBuf,
-    /// How far times may be off, microseconds.
+    /// Tolerance for times, microseconds.
     #[arg(long, value_name = "US", default_value_t = 0)]
     tolerance_us: u64,
     /// Records shown before and after the first difference.

@@ -12,13 +12,13 @@ use std::path::PathBuf;
 pub(crate) struct Export {
     /// The log; packed if its name ends in .gz.
     log: PathBuf,
-    /// What to write.
+    /// Format of the output.
     #[arg(long, value_name = "FORMAT")]
     to: To,
-    /// Where to [default: standard output; MCAP needs a file].
+    /// File to write [default: standard output; MCAP needs a file].
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Write over FILE if it is there.
+    /// Overwrite FILE if it exists.
     #[arg(long, requires = "out")]
     force: bool,
 }
@@ -27,7 +27,7 @@ pub(crate) struct Export {
 enum To {
     /// A table with bytes in hex.
     Csv,
-    /// The lines of the log with what they say.
+    /// The lines of the log with their meaning in words.
     Text,
     /// For Foxglove.
     Mcap,

@@ -10,38 +10,39 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(crate) struct Import {
-    /// The recordings; of tools that write a file a direction, both.
+    /// The recordings; both files of a tool that writes one file per direction.
     #[arg(value_name = "FILE", required_unless_present_any = ["host", "controller"])]
     files: Vec<PathBuf>,
-    /// A recording of what the host sent.
+    /// A recording of the bytes from the host.
     #[arg(long, value_name = "FILE")]
     host: Vec<PathBuf>,
-    /// A recording of what the controller sent.
+    /// A recording of the bytes from the controller.
     #[arg(long, value_name = "FILE")]
     controller: Vec<PathBuf>,
-    /// The tool that wrote them [default: found out].
+    /// The tool that wrote them [default: found from their contents].
     #[arg(long, value_name = "TOOL")]
     from: Option<From>,
     /// The log; packed if its name ends in .gz.
     #[arg(short, long, value_name = "LOG")]
     out: PathBuf,
-    /// Write over LOG if it is there.
+    /// Overwrite LOG if it exists.
     #[arg(long)]
     force: bool,
-    /// Bits a second on the line.
+    /// Baud rate of the line, bits per second.
     #[arg(long, value_name = "RATE", default_value_t = 256_000, value_parser = clap::value_parser!(u32).range(50..))]
     baud: u32,
-    /// Samples a second of the logic analyzer, for sigrok [default: from the baud rate and the length of a
-    /// byte].
+    /// Sample rate of the logic analyzer, Hz, for sigrok [default: computed from the baud rate and the
+    /// length of a byte].
     #[arg(long, value_name = "HZ")]
     sample_rate: Option<f64>,
-    /// What the tool calls the host (a port, an analyzer) [default: by its name, else who speaks first].
+    /// Name of the host in the recording (a port, an analyzer) [default: by its words, else the first
+    /// that sends].
     #[arg(long, value_name = "NAME")]
     host_name: Option<String>,
-    /// What the tool calls the controller.
+    /// Name of the controller in the recording.
     #[arg(long, value_name = "NAME")]
     controller_name: Option<String>,
-    /// What the line speaks, for the log's header.
+    /// Protocol of the line, for the log's header.
     #[arg(long, value_name = "NAME", default_value = "digits")]
     protocol: String,
 }

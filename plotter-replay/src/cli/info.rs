@@ -18,8 +18,8 @@ use std::time::Duration;
 pub(crate) struct Info {
     /// The log; packed if its name ends in .gz.
     log: PathBuf,
-    /// Where the pen is when the log begins, mm [default: where the machine first says to be, else the
-    /// origin].
+    /// Position of the pen when the log begins, mm [default: the first that the machine reports, else
+    /// the origin].
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     origin: Option<Point>,
 }
@@ -28,11 +28,11 @@ pub(crate) struct Info {
 const POINTS: usize = 200_000;
 /// Anomalies and targets that are kept.
 const ENTRIES: usize = 1_000;
-/// A time over which the greatest rate is taken.
+/// Window over which the greatest rate is measured.
 const WINDOW: Duration = Duration::from_millis(100);
-/// Gaps that are told.
+/// Most gaps that are reported.
 const MOST_GAPS: usize = 5;
-/// A silence that is a gap.
+/// Shortest silence that counts as a gap.
 const GAP: Duration = Duration::from_millis(500);
 
 /// Bytes of one direction over time.
@@ -230,7 +230,7 @@ impl Info {
     }
 }
 
-/// What of a session of text lines is known.
+/// Facts about a session of text lines.
 fn say_lines(out: &mut impl Write, lines: &LineCounts) {
     let LineCounts { sent, accepted, refused, told_until, assumed } = *lines;
     say(out, &format!("lines: {sent} sent, {accepted} taken by the machine, {refused} refused"));

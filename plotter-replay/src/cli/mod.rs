@@ -38,18 +38,17 @@ use std::io::Write as _;
 use std::process::ExitCode;
 use std::sync::OnceLock;
 
-/// What the program of this crate is called, as its words and examples have it.
+/// Name of this crate's program in its messages and examples.
 const OWN_NAME: &str = "plotter-replay";
 
-/// The options of what a command tells.
+/// Options for the output of a command.
 const QUIET: &str = "quiet";
 const JSON: &str = "json";
 
-/// What the running program is called, which some answers name.
+/// Name of the running program, which some messages contain.
 static PROGRAM: OnceLock<String> = OnceLock::new();
 
-/// Records a plotter's serial line, shows what a log of it holds, draws it, and runs the controller again on
-/// it.
+/// Records a plotter's serial line, summarizes and draws logs, and runs the controller again on them.
 ///
 /// Exit status: 0 clean, 1 damage or a difference found, 2 unreadable, not writable or a wrong command line.
 #[derive(Debug, Parser)]
@@ -71,7 +70,7 @@ fn command() -> clap::Command {
     names.iter().fold(line, |line, name| line.mut_subcommand(name, telling))
 }
 
-/// A command with the options of what it tells, which are alike in all of them.
+/// A command with the options for its output, which all commands have.
 fn telling(command: clap::Command) -> clap::Command {
     let flag = |name: &'static str, help: &'static str| {
         Arg::new(name).long(name).help(help).action(ArgAction::SetTrue)
@@ -87,7 +86,7 @@ fn telling(command: clap::Command) -> clap::Command {
         )
 }
 
-/// The commands, for the program of that name to take among its own; their examples name it.
+/// The commands, for a program that has them among its own; their examples have its name, `program`.
 #[must_use]
 pub fn subcommands(program: &str) -> Vec<clap::Command> {
     let named = |command: &clap::Command| {
@@ -156,7 +155,7 @@ fn told(error: &clap::Error) -> ExitCode {
     u8::try_from(error.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from)
 }
 
-/// How the running program comes by what it was built without.
+/// How to install the running program with a feature that it was built without.
 #[cfg_attr(
     all(feature = "live", feature = "mcap", feature = "serial"),
     expect(dead_code, reason = "this one has all")
@@ -169,7 +168,7 @@ fn with_feature(feature: &str) -> String {
     }
 }
 
-/// What the running program is called.
+/// Name of the running program.
 fn program() -> &'static str {
     PROGRAM.get().map_or(OWN_NAME, String::as_str)
 }

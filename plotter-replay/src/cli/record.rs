@@ -24,7 +24,7 @@ pub(crate) struct Record {
     /// The log; packed if its name ends in .gz.
     #[arg(short, long, value_name = "LOG")]
     out: PathBuf,
-    /// Write over LOG if it is there.
+    /// Overwrite LOG if it exists.
     #[arg(long)]
     force: bool,
     /// Stop after so many seconds [default: Ctrl-C].

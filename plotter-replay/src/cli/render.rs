@@ -13,7 +13,7 @@ use plotter_motion::{Pen, PlotOp, Point};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Most operations of a drawing that are kept, some 40 bytes each.
+/// Most operations of a drawing that are kept, of some 40 bytes each.
 const MOST_OPS: usize = 8_000_000;
 /// Records after which what was drawn goes on to the canvas.
 const HAND_ON_AFTER: u64 = 4_096;
@@ -26,10 +26,10 @@ pub(crate) struct Render {
     /// current one, unless a single file is asked for].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Write the drawing as SVG.
+    /// Write the plotted drawing as SVG.
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
-    /// Write the drawing as PNG.
+    /// Write the plotted drawing as PNG.
     #[arg(long, value_name = "FILE")]
     png: Option<PathBuf>,
     /// Write the response of both motors as SVG.
@@ -38,18 +38,18 @@ pub(crate) struct Render {
     /// Write a page for a browser, which plays the recording and needs no network.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// The drawing that was sent, in HPGL, G-code or the thesis' text: tells the pen, and what should have
-    /// been drawn.
+    /// The drawing that was sent, in HPGL, G-code or the thesis' text. It tells when the pen is down,
+    /// and what should have been drawn.
     #[arg(long, value_name = "FILE")]
     drawing: Option<PathBuf>,
-    /// Mark what was drawn farther than this from its line, mm.
+    /// Mark ink farther than this from its line, mm.
     #[arg(long, value_name = "MM", default_value_t = PageSettings::default().mark_mm, value_parser = length)]
     mark_mm: f64,
-    /// Where the pen is when the log begins, mm [default: where the machine first says to be, else the
-    /// origin].
+    /// Position of the pen when the log begins, mm [default: the first that the machine reports, else
+    /// the origin].
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     origin: Option<Point>,
-    /// Show the moves with the pen up, too.
+    /// Show travel, too.
     #[arg(long)]
     travel: bool,
     /// Longer side of the PNG, pixels.
@@ -58,7 +58,7 @@ pub(crate) struct Render {
 }
 
 impl Render {
-    /// Does it.
+    /// Runs the command.
     pub(crate) fn run(self, out: &mut impl Write) -> Done {
         let drawing = self.drawing.as_deref().map(|path| read_drawing(path, out)).transpose()?;
         let single = [&self.svg, &self.png, &self.chart, &self.html].into_iter().any(Option::is_some);
@@ -174,7 +174,7 @@ impl Render {
     }
 }
 
-/// What came of a log.
+/// Files and figures made of a log.
 struct Drawn {
     plotter: VirtualPlotter,
     page: Option<RecordingPage>,

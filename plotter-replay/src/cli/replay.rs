@@ -21,27 +21,26 @@ pub(crate) struct Replay {
     /// The machine's description [default: the preset of the controller that the log's header names].
     #[arg(long, value_name = "FILE.toml")]
     machine: Option<PathBuf>,
-    /// Show what was recorded, and run no controller.
+    /// Show the recording without running a controller.
     #[arg(long, conflicts_with = "machine")]
     recorded: bool,
-    /// Keep what the controller says and does now as a log; nothing is shown then, unless a speed or steps
-    /// are asked for.
+    /// Write the answers and actions of the controller to a log. Nothing is shown then, unless --speed
+    /// or --step is given.
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Write over FILE if it is there.
+    /// Overwrite FILE if it exists.
     #[arg(long, requires = "out")]
     force: bool,
-    /// How many times as fast as it was [default: without waiting; time is that of the log, no clock is
-    /// read].
+    /// Speed relative to the recording [default: without waiting].
     #[arg(long, value_name = "FACTOR", value_parser = speed)]
     speed: Option<f64>,
-    /// Show what comes from here on, seconds; what is before is run without waiting.
+    /// Start of the part that is shown, seconds; everything before it is run without waiting.
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true, default_value = "0")]
     from: Duration,
-    /// Show what comes up to here, seconds, and stop.
+    /// End of the part that is shown, seconds.
     #[arg(long, value_name = "S", value_parser = seconds)]
     to: Option<Duration>,
-    /// Wait at most so many seconds [0.1] where the line is silent.
+    /// Wait at most this many seconds [0.1] while the line is silent.
     #[arg(long, value_name = "S", value_parser = seconds, num_args = 0..=1, default_missing_value = "0.1")]
     skip_gaps: Option<Duration>,
     /// Wait for the Enter key after each record; q ends it.

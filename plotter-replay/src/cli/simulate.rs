@@ -25,15 +25,15 @@ const TELL_PLACE_EVERY: Duration = Duration::from_secs(2);
 /// Longest script that is read, bytes.
 const MOST_SCRIPT_BYTES: u64 = 1 << 20;
 
-/// Which machine.
+/// Options of a simulated machine.
 #[derive(Debug, Args)]
 pub(crate) struct Simulate {
     /// The machine's description [default: the semi-virtual gantry].
     machine: Option<PathBuf>,
-    /// What it speaks [default: grbl with stepper motors, digits with a belt, else link].
+    /// Protocol of the machine [default: grbl with stepper motors, digits with a belt, else link].
     #[arg(long, value_enum)]
     dialect: Option<Dialect>,
-    /// Seconds of the machine in one of ours; the host's patience is in ours.
+    /// Seconds of simulated time per second; the time-outs of the host are not scaled.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = super::machine::speed)]
     speed: f64,
     /// Speak the published digits only, as a machine without the reliable link does: --dialect digits.
@@ -47,25 +47,25 @@ pub(crate) struct Simulate {
     /// paper WIDTH HEIGHT.
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
-    /// Do to the machine what is typed here, too: lines of a script without the time.
+    /// Also take lines of a script, without the time, from the keyboard.
     #[arg(long)]
     by_hand: bool,
-    /// Show it on a page of this computer, too, with an emergency stop.
+    /// Also show the machine on a page of this computer, with an emergency stop.
     #[arg(long)]
     page: bool,
     /// Port of 127.0.0.1 for the page; 0 takes any that is free.
     #[arg(long, value_name = "NUMBER", default_value_t = 0, requires = "page")]
     http_port: u16,
-    /// Record what happens inside it, each edge, duty and step too, so that `check` can run its controller
-    /// again to the same bytes.
+    /// Record the inside of the machine, with each edge, duty and step, so that `check` can run its
+    /// controller again to the same bytes.
     #[arg(short, long, value_name = "LOG")]
     output: Option<PathBuf>,
-    /// Write over LOG if it is there.
+    /// Overwrite LOG if it exists.
     #[arg(long, requires = "output")]
     force: bool,
 }
 
-/// What is spoken.
+/// Protocols.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Dialect {
     /// Grbl 1.1's lines: stepper motors

@@ -40,7 +40,7 @@ pub struct ContourError {
     pub max_at: Duration,
 }
 
-/// Which ways are measured.
+/// Movements that are measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Ways {
     /// Those with the pen down.
@@ -83,7 +83,7 @@ impl ContourTally {
         samples_of(legs, *settings, ways).for_each(|sample| self.push(sample));
     }
 
-    /// What has come so far.
+    /// Error so far.
     #[must_use]
     pub fn error(&self) -> ContourError {
         let mut error = self.error;

@@ -1,15 +1,15 @@
-//! What came of comparing two logs.
+//! Outcome of comparing two logs.
 
 use crate::log::{Event, Record, write_line};
 use core::fmt;
 use core::time::Duration;
 
-/// What came of comparing two logs.
+/// Result of comparing two logs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Comparison {
     /// The first difference; `None` if there is none.
     pub first: Option<FirstDifference>,
-    /// What is equal and what is not, for each kind of which there is anything.
+    /// Equal and different records, for each kind that occurs.
     pub lanes: Vec<LaneSummary>,
 }
 
@@ -22,13 +22,13 @@ pub struct FirstDifference {
     pub lane: &'static str,
     /// The how manieth of them it is, from 0: for bytes, the byte's index in its direction.
     pub index: u64,
-    /// What the first log has there.
+    /// Place in the first log.
     pub left: Place,
-    /// What the second has.
+    /// Place in the second log.
     pub right: Place,
 }
 
-/// What a log has at a place.
+/// A place in a log, with its records.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
     /// In words, and when; `None` if it has nothing more.

@@ -58,7 +58,7 @@ pub(super) struct Entry {
     pub(super) item: Item,
 }
 
-/// What came of a lane.
+/// Result of comparing one lane.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tally {
     pub(super) equal: u64,

@@ -1,4 +1,4 @@
-//! What differs: the pen from its line ([`ContourError`]), one log from another ([`compare`]).
+//! Comparisons: the pen with its line ([`ContourError`]), one log with another ([`compare`]).
 
 mod contour;
 mod decode;

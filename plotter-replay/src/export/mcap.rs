@@ -17,7 +17,7 @@ use std::io::{Seek, Write};
 /// How a log becomes MCAP.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct McapSettings {
-    /// What happens within so much time is one message a topic.
+    /// Window of time whose records become one message per topic.
     pub batch: Duration,
     /// Time of the log's beginning, ns since 1970: Foxglove shows times of day.
     pub began_ns: u64,
@@ -33,7 +33,7 @@ impl Default for McapSettings {
 /// Why a log cannot become MCAP.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct McapError {
-    /// What is wrong.
+    /// The error message.
     pub message: String,
 }
 

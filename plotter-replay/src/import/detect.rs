@@ -1,4 +1,4 @@
-//! Which tool wrote a file, from its first lines.
+//! Detects the tool that wrote a file by its first lines.
 
 use super::Tool;
 

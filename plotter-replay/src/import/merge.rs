@@ -9,14 +9,14 @@ use core::time::Duration;
 use std::collections::VecDeque;
 use std::io::{self, BufRead, Write};
 
-/// What was imported.
+/// Result of an import.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Imported {
     /// Bytes of the host.
     pub host_bytes: u64,
     /// Bytes of the controller.
     pub controller_bytes: u64,
-    /// What could not be read: lines, and times that had to be changed.
+    /// Number of lines that could not be read and of times that had to be changed.
     pub troubles: u64,
     /// Names and files and who they are taken for.
     pub sides: Vec<(String, Side)>,
@@ -182,7 +182,7 @@ pub fn import<W: Write>(
     Ok(imported)
 }
 
-/// Who sent the bytes of each file, where that is one.
+/// Sender of the bytes of each file, where all are of one.
 fn file_sides(sources: &[Source<'_>], settings: &ImportSettings) -> Result<Vec<Option<Side>>, ImportError> {
     let mut sides = Vec::new();
     for source in sources {

@@ -1,7 +1,7 @@
 //! Recordings of other tools, as logs of this crate.
 //!
-//! Serial lines are recorded with many tools, and each writes its own text. All of them say the same: at this
-//! time, in this direction, these bytes.
+//! Many tools record serial lines, each in a text format of its own. All of them have the same content: a
+//! time, a direction and bytes.
 //!
 //! | tool | how it is run | what tells the direction |
 //! |---|---|---|
@@ -13,7 +13,7 @@
 //! | [`Tool::Raw`] | `cat /dev/ttyUSB0 >FILE`: bare bytes | a file; times are made from the baud rate |
 //! | [`Tool::PlotterRaw`] | `t_us,H\|D,hex` after a line `# plotter-raw/1` | `H` is the host |
 //!
-//! What cannot be read is told with its line, and the rest is taken.
+//! A line that cannot be read is reported with its number, and the rest is taken.
 
 mod candump;
 mod clock;
@@ -34,7 +34,7 @@ pub use merge::{ImportError, Imported, import};
 use core::fmt;
 use std::io::{self, BufRead};
 
-/// What wrote a recording.
+/// Tools that write recordings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Tool {
@@ -54,7 +54,7 @@ pub enum Tool {
     PlotterRaw,
 }
 
-/// Who sent a byte.
+/// Sender of a byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Side {
     /// The computer.
@@ -63,7 +63,7 @@ pub enum Side {
     Controller,
 }
 
-/// What must be known besides the files.
+/// Settings of an import, beside its files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImportSettings {
     /// Bits a second on the line.
@@ -71,9 +71,9 @@ pub struct ImportSettings {
     /// Samples a second of the logic analyzer, for sigrok; without it, it follows from the baud rate and the
     /// length of a byte.
     pub sample_rate_hz: Option<f64>,
-    /// What a tool calls the host (a port or an analyzer).
+    /// Name of the host in the recording (a port or an analyzer).
     pub host: Option<String>,
-    /// What a tool calls the controller.
+    /// Name of the controller in the recording.
     pub controller: Option<String>,
 }
 
@@ -93,11 +93,11 @@ impl ImportSettings {
 
 /// A file to be imported. It is read twice: what a number means can depend on all others.
 pub struct Source<'a> {
-    /// Its name, for messages.
+    /// Name of the source, for messages.
     pub name: String,
-    /// What wrote it.
+    /// Tool that wrote the file.
     pub tool: Tool,
-    /// Who sent its bytes, if it is the recording of one direction; where that is not said, it is found out.
+    /// Sender of the bytes, if the source records one direction; `None` finds it out.
     pub side: Option<Side>,
     /// Opens it, at its beginning.
     pub open: Box<dyn Fn() -> io::Result<Box<dyn BufRead + 'a>> + 'a>,
@@ -121,7 +121,7 @@ pub struct Trouble {
     pub file: String,
     /// The line, from 1; 0 for none.
     pub line: u64,
-    /// What is wrong.
+    /// The error message.
     pub message: String,
 }
 
@@ -146,7 +146,7 @@ impl Tool {
         Self::PlotterRaw,
     ];
 
-    /// Its name on the command line and in a log's header.
+    /// Name on the command line and in a log's header.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

@@ -1,4 +1,4 @@
-//! Who sent what, where a tool gives only names.
+//! Assigns bytes to host and controller where a tool gives only names of ports.
 
 use super::{ImportSettings, Side};
 
@@ -52,7 +52,7 @@ impl Sides {
     }
 }
 
-/// Who a name is by its words.
+/// The sender that a name suggests by its words.
 pub(super) fn hint(name: &str) -> Option<Side> {
     let lower = name.to_ascii_lowercase();
     let mut sides = lower.split(|c: char| !c.is_ascii_alphanumeric()).filter_map(|word| match word {

@@ -28,7 +28,7 @@ impl TcpLine {
             port: format!("127.0.0.1:{port}"),
             kind: match error.kind() {
                 io::ErrorKind::AddrInUse => PortErrorKind::Busy,
-                io::ErrorKind::PermissionDenied => PortErrorKind::NotAllowed,
+                io::ErrorKind::PermissionDenied => PortErrorKind::PermissionDenied,
                 _ => PortErrorKind::Other(error.to_string()),
             },
         };

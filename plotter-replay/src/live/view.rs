@@ -2,7 +2,7 @@
 
 use super::State;
 use super::progress::{Pace, Plan};
-use crate::draw::page::{DRAWN, Trail, TrailPoint, spread};
+use crate::draw::page::{DRAWN, Trail, TrailPoint, pulse_times};
 use crate::log::{Event, Record};
 use crate::{PlotterSettings, VirtualPlotter};
 use core::time::Duration;
@@ -141,7 +141,7 @@ impl View {
         for leg in &noted.legs {
             self.from = settings.to_sheet(leg.from);
             let line = leg.target.map(|target| Segment::new(self.from, settings.to_sheet(target)));
-            for (point, at_us) in leg.points.iter().zip(spread(&leg.points)) {
+            for (point, at_us) in leg.points.iter().zip(pulse_times(&leg.points)) {
                 let at = settings.to_sheet(point.at);
                 self.way.push(TrailPoint {
                     at_us,

@@ -1,4 +1,4 @@
-//! The log of a plotter's serial line: one text line a record, each with its own checksum.
+//! The log of a plotter's serial line: one line of text per record, each with its own checksum.
 //!
 //! ```text
 //! plotter-log 1 {"baud":256000,"protocol":"digits","machine":"semi-virtual-gantry"}
@@ -7,15 +7,16 @@
 //! 10350 @ edge x+ *5a
 //! 10351 @ drive x 20 *04
 //! │     │ │          └── CRC-8/SMBUS of everything before the asterisk, the space included
-//! │     │ └── bytes in hex, or what no byte shows
-//! │     └── > host to controller, < controller to host, @ beside the line
+//! │     │ └── bytes in hex, or an event that is not a byte: an edge, a drive
+//! │     └── > host to controller, < controller to host, @ an event that is not on the serial line
 //! └── microseconds since the start, never decreasing
 //! ```
 //!
-//! A person reads the difference of two logs, `grep` works, and a kill costs one line. The format is
-//! described in full in `docs/log-format.md`.
+//! Two logs can be compared with `diff` and searched with `grep`, and a killed recorder loses at most one
+//! line. `docs/log-format.md` in the repository describes the format in full.
 //!
-//! [`Writer`] appends whole lines; [`Reader`] goes on past any damage and says what was lost.
+//! [`Writer`] appends whole lines. [`Reader`] continues after any damage and reports what was lost. It
+//! refuses a log of another version than [`VERSION`].
 
 mod damage;
 mod file;

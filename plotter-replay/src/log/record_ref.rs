@@ -1,11 +1,11 @@
-//! [`RecordRef`]: a record whose bytes lie elsewhere, for those who read or write many millions.
+//! [`RecordRef`]: a record that borrows its bytes, for reading or writing many millions without allocation.
 
 use super::{Event, Record, SwitchName};
 use core::time::Duration;
 use plotter_motion::{Axis, Direction, Pen};
 use std::borrow::Cow;
 
-/// A [`Record`] that borrows its bytes from the reader or the caller, so that none of it is allocated.
+/// A [`Record`] that borrows its bytes from the reader or the caller, so that nothing is allocated.
 ///
 /// ```
 /// # use plotter_replay::log::{EventRef, Header, Reader, RecordRef, Writer};
@@ -21,13 +21,13 @@ use std::borrow::Cow;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordRef<'a> {
-    /// Since the start of the log.
+    /// Time since the start of the log.
     pub time: Duration,
-    /// What happened.
+    /// The event.
     pub event: EventRef<'a>,
 }
 
-/// An [`Event`] that borrows.
+/// An [`Event`] that borrows its bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum EventRef<'a> {
@@ -37,23 +37,23 @@ pub enum EventRef<'a> {
     Controller(&'a [u8]),
     /// See [`Event::Edge`].
     Edge {
-        /// Which motor.
+        /// The motor.
         axis: Axis,
-        /// Which way.
+        /// Direction of the edge.
         sign: Direction,
     },
     /// See [`Event::Drive`].
     Drive {
-        /// Which motor.
+        /// The motor.
         axis: Axis,
         /// Signed steps of the PWM timer.
         duty: i32,
     },
     /// See [`Event::Switch`].
     Switch {
-        /// Which one.
+        /// The switch.
         name: Cow<'a, SwitchName>,
-        /// Whether it is pressed now.
+        /// Whether it has been pressed or released.
         pressed: bool,
     },
     /// See [`Event::Estop`].
@@ -62,9 +62,9 @@ pub enum EventRef<'a> {
     Pen(Pen),
     /// See [`Event::Target`].
     Target {
-        /// To the right.
+        /// Counts to the right.
         x: i32,
-        /// Up.
+        /// Counts upwards.
         y: i32,
     },
     /// See [`Event::Note`].
@@ -72,7 +72,7 @@ pub enum EventRef<'a> {
 }
 
 impl RecordRef<'_> {
-    /// The same with bytes of its own.
+    /// The same record with bytes of its own.
     #[must_use]
     pub fn to_record(&self) -> Record {
         let event = match &self.event {
@@ -93,7 +93,7 @@ impl RecordRef<'_> {
 }
 
 impl Record {
-    /// The same without bytes of its own.
+    /// The same without a copy of the bytes.
     #[must_use]
     pub fn view(&self) -> RecordRef<'_> {
         RecordRef { time: self.time, event: self.event.view() }
@@ -101,7 +101,7 @@ impl Record {
 }
 
 impl Event {
-    /// The same without bytes of its own.
+    /// The same without a copy of the bytes.
     #[must_use]
     pub fn view(&self) -> EventRef<'_> {
         match self {

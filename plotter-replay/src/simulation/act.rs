@@ -50,7 +50,7 @@ pub enum Act {
     },
     /// The carriage is pushed.
     Lose {
-        /// Of which axis.
+        /// Axis of the switch.
         axis: Axis,
         /// By so many steps.
         steps: i32,
@@ -67,7 +67,7 @@ pub enum Act {
 /// An act that is none, or not of this machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ActError {
-    /// What is wrong.
+    /// The error message.
     pub message: String,
 }
 

@@ -36,7 +36,7 @@ pub(crate) type Take<'a> = &'a mut dyn FnMut(Duration, Event);
 /// Where a simulated machine stands.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Seen {
-    /// What it does, in a word of its controller.
+    /// Activity, in a word of the machine's controller.
     pub doing: &'static str,
     /// Where the pen truly is, mm.
     pub at: Point,
@@ -44,7 +44,7 @@ pub struct Seen {
     pub pen: Option<Pen>,
     /// Power of the laser, per cent, where there is one.
     pub laser_percent: Option<f64>,
-    /// Which limit switches are pressed.
+    /// Limit switches that are pressed.
     pub pressed: LimitSwitches,
     /// Steps that each motor was told and has not made.
     pub lost_steps: [i64; 2],
@@ -84,7 +84,7 @@ pub(crate) trait World {
 
 /// A controller of which more can be told than a player asks.
 pub(crate) trait Told: Controller {
-    /// What it does, in a word, and the power of its laser.
+    /// Activity, in a word, and the power of the laser.
     fn told(&self, now: Duration) -> (&'static str, Option<f64>);
 
     /// Which way it counts the pulses of a motor whose encoder does not tell.

@@ -28,7 +28,7 @@ pub struct Script {
 pub struct ScriptError {
     /// The line, from 1.
     pub line: usize,
-    /// What is wrong with it.
+    /// The fault of the line.
     pub message: String,
 }
 

@@ -54,7 +54,7 @@ impl Faults {
     }
 }
 
-/// What a [`FaultInjector`] has done.
+/// Counts of the faults that a [`FaultInjector`] has made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FaultCounts {
     /// Bytes offered.
@@ -124,7 +124,7 @@ impl FaultInjector {
         }
     }
 
-    /// What it has done.
+    /// Counts of the faults made so far.
     #[must_use]
     pub const fn counts(&self) -> FaultCounts {
         self.counts

@@ -1,4 +1,4 @@
-//! What in a log does not fit the protocol or itself.
+//! Anomalies: records of a log that do not fit the protocol or each other.
 
 use crate::import::Side;
 use core::fmt;
@@ -14,7 +14,7 @@ pub struct Anomaly {
     pub kind: AnomalyKind,
 }
 
-/// What does not fit.
+/// Kinds of anomalies.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AnomalyKind {
@@ -47,7 +47,7 @@ pub enum AnomalyKind {
     },
     /// The log ends inside a target.
     PartialTargetAtEnd {
-        /// Its digits so far, in the order sent.
+        /// Digits of the target so far, in the order sent.
         digits: Vec<u8>,
     },
     /// The host sent further targets before the present one was reached.

@@ -24,7 +24,7 @@ pub(super) enum Tongue {
     MDraw,
 }
 
-/// What of a session of lines is known.
+/// Facts about a session of text lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineCounts {
     /// Lines that the host sent; questions and orders of one byte are none.
@@ -223,7 +223,7 @@ fn told_place(line: &str) -> Option<Point> {
 }
 
 impl VirtualPlotter {
-    /// What of a session of text lines is known; `None` for other protocols.
+    /// Facts about a session of text lines; `None` for other protocols.
     #[must_use]
     pub fn line_counts(&self) -> Option<LineCounts> {
         self.lines.as_ref().map(|lines| lines.counts)

@@ -353,7 +353,7 @@ impl VirtualPlotter {
         self.stop_count
     }
 
-    /// What did not fit, in its order.
+    /// Anomalies so far, in their order.
     #[must_use]
     pub fn anomalies(&self) -> &[Anomaly] {
         &self.anomalies

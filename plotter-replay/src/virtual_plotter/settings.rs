@@ -19,7 +19,7 @@ pub struct PlotterSettings {
     /// Which way the two motors of a belt turn; `None` where each moves an axis. Counts are those of the
     /// motors either way, and a belt has one scale, that of x.
     pub belt: Option<BeltSigns>,
-    /// What says where the motors are.
+    /// Records that tell the position of the motors.
     pub counted_by: CountedBy,
     /// Where the pen is when the log begins, mm; `None` for the origin of the counts, or where the machine
     /// first says to be.
@@ -39,7 +39,7 @@ pub struct PlotterSettings {
     pub max_entries: usize,
 }
 
-/// What in a log says where the motors are.
+/// Records of a log that tell the position of the motors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum CountedBy {
     /// The controller's answers on the serial line: the protocol `digits`.
@@ -92,7 +92,7 @@ const STEP_MM: f64 = 1.0 / 87.58;
 pub struct SettingsError {
     /// The key.
     pub key: &'static str,
-    /// What would be right.
+    /// The remedy.
     pub expected: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! What is written is read again, and a cut costs one line.
+//! A written log is read again unchanged, and a cut costs one line.
 
 use plotter_motion::{Axis, Direction, Pen};
 use plotter_replay::log::{DamageKind, Event, Header, ReadError, Reader, Record, SwitchName, Writer};

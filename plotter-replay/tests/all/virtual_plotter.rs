@@ -1,4 +1,4 @@
-//! What the virtual plotter makes of a line that is not as it should be.
+//! The virtual plotter on a serial line with faults.
 
 use plotter_motion::kinematics::BeltSigns;
 use plotter_motion::protocol::digits;

@@ -1,14 +1,14 @@
-//! [`Feed`]: how the paper moves from frame to frame.
+//! [`Feed`]: simulates how the paper moves from frame to frame.
 
 use super::noise::Noise;
 use crate::FrameTransform;
 use plotter_motion::Vec2;
 
-/// How badly the paper is moved on.
+/// Errors of the paper feed.
 ///
-/// The default is a machine at the limits that its source gives: rewinding stops up to 5 mm beside its place,
-/// and the turn comes to 0.002 rad. The rolls lead a little: each time a part of walk and turn is taken back,
-/// so that a sheet of any length stays on the table.
+/// The default is a machine at the limits that Ivanov et al. give: rewinding stops up to 5 mm off its target,
+/// and the paper turns by up to 0.002 rad. The rolls guide the paper a little: each move takes back a part of
+/// drift and turn, so that a sheet of any length stays on the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -16,22 +16,22 @@ use plotter_motion::Vec2;
     serde(deny_unknown_fields, default)
 )]
 pub struct FeedSettings {
-    /// How far from where it was meant to the paper may stop, mm.
+    /// Greatest error of the distance that the paper is moved, mm.
     pub rewind_mm: f64,
-    /// Sideways at each move, to the right: mean and standard deviation, mm.
+    /// Drift to the right at each move: mean and standard deviation, mm.
     pub walk_mm: [f64; 2],
     /// Turn at each move: mean and standard deviation, rad.
     pub turn_rad: [f64; 2],
     /// Greatest turn, rad: the rolls allow no more.
     pub most_turn_rad: f64,
-    /// Share of walk and turn that the rolls take back at each move.
+    /// Fraction of drift and turn that the rolls take back at each move, 0 to 1.
     pub led: f64,
-    /// Standard deviation of the paper's stretch between drawing and finding again, as a share of the length
-    /// along the sheet.
+    /// Standard deviation of the paper's stretch between drawing a mark and finding it again, as a fraction
+    /// of the length along the sheet.
     pub stretch: f64,
-    /// Share of the moves at which the paper folds.
+    /// Fraction of the moves at which the paper folds, 0 to 1.
     pub folds: f64,
-    /// How far a fold lets the two strokes of a probe lie apart: least and greatest, mm.
+    /// Distance between the two strokes of a probe across a fold: least and greatest, mm.
     pub fold_mm: [f64; 2],
 }
 
@@ -53,15 +53,15 @@ impl Default for FeedSettings {
 /// One move of the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PaperMove {
-    /// Where what lay under a place of the machine lies now.
+    /// From where a point of the paper was before to where it is now, both in the machine's coordinates.
     pub motion: FrameTransform,
-    /// By which share the paper has become longer meanwhile.
+    /// Stretch of the paper since the last move, as a fraction of the length.
     pub stretch: f64,
-    /// How far apart two strokes over the fold lie, mm, if the paper has folded.
+    /// Distance between two strokes across the fold, mm, if the paper has folded.
     pub fold_mm: Option<f64>,
 }
 
-/// The rolls of a simulated machine: an endless row of moves. The same seed gives the same ones.
+/// The rolls of a simulated machine: an endless sequence of moves. The same seed gives the same sequence.
 ///
 /// ```
 /// use plotter_motion::Point;
@@ -81,28 +81,28 @@ pub struct Feed {
 }
 
 impl Feed {
-    /// Paper that lies straight at first.
+    /// Paper that lies straight before the first move.
     #[must_use]
     pub fn new(settings: FeedSettings, seed: u64) -> Self {
         let mut random = Noise::new(seed);
-        // Neighbouring seeds shall have nothing in common.
+        // Seeded twice, so that neighbouring seeds have nothing in common.
         random = Noise::new(random.bits());
         Self { settings, random, walk_mm: 0.0, turn_rad: 0.0 }
     }
 
-    /// How far the paper has walked sideways, mm.
+    /// Drift of the paper to the right so far, mm.
     #[must_use]
     pub const fn walk_mm(&self) -> f64 {
         self.walk_mm
     }
 
-    /// How far it is turned against the machine, rad.
+    /// Turn of the paper relative to the machine, rad.
     #[must_use]
     pub const fn turn_rad(&self) -> f64 {
         self.turn_rad
     }
 
-    /// Moves the paper on by a length that was asked for, mm.
+    /// Moves the paper by `by_mm`, with the errors of the settings.
     pub fn next_move(&mut self, by_mm: f64) -> PaperMove {
         let FeedSettings { rewind_mm, walk_mm, turn_rad, most_turn_rad, led, .. } = self.settings;
         let before = pose(self.turn_rad, self.walk_mm);
@@ -121,8 +121,8 @@ impl Feed {
         PaperMove { motion, stretch, fold_mm: folds.then_some(fold_mm) }
     }
 
-    /// Somebody fits the paper by hand, so that it lies straight up to a first move's walk and turn. Gives
-    /// where what lay under a place of the machine lies now.
+    /// A person straightens the paper by hand, up to the drift and turn of one move. Returns where a point of
+    /// the paper was before to where it is now.
     pub fn fit(&mut self) -> FrameTransform {
         let before = pose(self.turn_rad, self.walk_mm);
         [self.walk_mm, _] = self.random.normals(self.settings.walk_mm[1]);
@@ -132,7 +132,7 @@ impl Feed {
     }
 }
 
-/// Paper that is turned and has walked sideways; numbers that are none leave it straight.
+/// The pose of paper with this turn and drift; numbers that are not finite leave it straight.
 fn pose(turn_rad: f64, walk_mm: f64) -> FrameTransform {
     FrameTransform::new(turn_rad, Vec2::new(walk_mm, 0.0)).unwrap_or(FrameTransform::IDENTITY)
 }

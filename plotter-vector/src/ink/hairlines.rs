@@ -1,4 +1,4 @@
-//! [`Hairlines`]: whether thin lines are chains of pixels or what a pen wider than a pixel leaves of them.
+//! [`Hairlines`]: whether thin lines are chains of pixels or the ink of a pen wider than a pixel.
 //!
 //! ```text
 //!   # # # . . . .      a bare step: the next pixel lies across the corner,
@@ -8,27 +8,28 @@
 //!   . . # # # # .      as under a pen that inks all pixels whose middle it comes over
 //! ```
 //!
-//! A pen of w px that goes in the direction θ, up to 45°, inks w / cos θ pixels in the mean of each column. A
-//! step comes once in 1 / tan θ columns, so the part (w / cos θ − 1) / tan θ of all steps is filled. That is
-//! tan(θ / 2), at most 0.414, for w = 1, and √(w² − 1) at least for a wider one: 0.458 for 1.1 px, whatever
-//! the direction. The raster of a line has none, but for the places where lines run into each other: fewer
-//! than one in eight.
+//! A pen of w px that moves in the direction θ, up to 45°, inks w / cos θ pixels of each column on average. A
+//! step comes once in 1 / tan θ columns, so the fraction (w / cos θ − 1) / tan θ of all steps is filled. That
+//! is tan(θ / 2), at most 0.414, for w = 1, and at least √(w² − 1) for a wider pen: 0.458 for 1.1 px, in any
+//! direction. The raster of a line has filled steps only where lines run into each other: fewer than one in
+//! eight.
 
-/// Of sixteen steps so many are filled under a pen: one of 1.09 px or more.
+/// Least number of filled steps in sixteen under a pen: 7/16 is a pen of 1.09 px, between the 0.414 of one
+/// pixel and the 0.458 of 1.1 px.
 const FILLED_OF_16: u64 = 7;
 
-/// Pixels of ink for each filled step, at most: fewer of them are where lines touch.
+/// Most pixels of ink per filled step of a pen: fewer filled steps than that come of lines that touch.
 const INK_PER_STEP: u64 = 256;
 
-/// What the thin lines of a picture are.
+/// Kinds of thin lines in a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Hairlines {
     /// Chains of pixels, each of which is the line.
     #[default]
     Raster,
-    /// The same with pixels in the corners of their steps: what a pen of one pixel left.
+    /// Chains with pixels in the corners of some steps: the ink of a pen one pixel wide.
     Stairs,
-    /// What a wider pen left: the line is the middle of it.
+    /// The ink of a wider pen: the line is its middle.
     Pen,
 }
 
@@ -40,7 +41,7 @@ pub(crate) struct Steps {
     found: Found,
 }
 
-/// What was counted.
+/// Counts of steps and blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Found {
     /// Bare steps.
@@ -54,14 +55,14 @@ pub(crate) struct Found {
 }
 
 impl Steps {
-    /// Before the first row of a picture of `width` px.
+    /// No rows yet, of a picture `width` px wide.
     pub(crate) fn new(width: u32) -> Self {
         let row = || vec![0; width.div_ceil(u64::BITS) as usize + 2];
         Self { rows: [row(), row(), row(), row(), row()], found: Found::default() }
     }
 
-    /// The next row, in words as of [`Bitmap::row`](crate::picture::Bitmap::row); a longer row is cut, a
-    /// shorter one ends with paper.
+    /// Counts the next row, in words as of [`Bitmap::row`](crate::picture::Bitmap::row); a longer row is cut,
+    /// a shorter one ends with paper.
     pub(crate) fn push(&mut self, row: &[u64]) {
         self.rows.rotate_left(1);
         let [first, above, here, below, last] = &mut self.rows;
@@ -73,14 +74,14 @@ impl Steps {
         rest.fill(0);
         let pairs = here.iter().zip(below.iter()).skip(1).take(end - 1);
         for (before, _) in pairs.enumerate().filter(|(_, (here, below))| **here | **below != 0) {
-            // Most of a sheet is paper.
-            // Written out: mapped, the five are not kept in registers.
+            // Words of paper, most of a sheet, have been skipped. The five calls are written out: an array
+            // mapped over is not kept in registers.
             let of = |row: &[u64]| row.get(before..before + 3).map_or_else(Around::default, Around::of);
             self.found.add([of(first), of(above), of(here), of(below), of(last)]);
         }
     }
 
-    /// What was found, after the last row.
+    /// The counts, after the last row.
     pub(crate) fn finish(mut self) -> Found {
         (0..2).for_each(|_| self.push(&[]));
         self.found
@@ -88,7 +89,7 @@ impl Steps {
 }
 
 impl Found {
-    /// Adds what the third of five rows has, and the fourth with it.
+    /// Adds the steps of the third of five rows, some of which it has together with the fourth.
     fn add(&mut self, window: [Around; 5]) {
         let [first, above, here, below, last] = window;
         let mirrored =
@@ -104,7 +105,7 @@ impl Found {
         self.turns / 2 + self.overlaps
     }
 
-    /// What the thin lines are, of a picture with so many pixels of ink.
+    /// The kind of the thin lines in a picture with `ink_pixels` pixels of ink.
     pub(crate) fn hairlines(self, ink_pixels: u64) -> Hairlines {
         let (steps, filled) = (self.bare + self.filled(), self.filled());
         if filled == 0 || filled * INK_PER_STEP < ink_pixels || 8 * filled < steps {
@@ -126,7 +127,7 @@ struct Around {
 }
 
 impl Around {
-    /// Of a word between two others.
+    /// The middle one of three words of a row.
     fn of(words: &[u64]) -> Self {
         let &[before, at, after] = words else { return Self::default() };
         Self {

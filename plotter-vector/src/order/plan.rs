@@ -19,7 +19,7 @@ const MIN_CLOSED: usize = 3;
 pub(crate) struct Stroke<'a> {
     drawing: &'a Drawing,
     index: u32,
-    /// Its place in the given order.
+    /// Number in the given order.
     pub(crate) rank: u32,
     /// Letter it belongs to, 0 for none; strokes are joined only within one letter.
     pub(crate) letter: u32,
@@ -42,7 +42,7 @@ impl<'a> Stroke<'a> {
         self.drawing.course(self.index as usize)
     }
 
-    /// Its length, px.
+    /// Length, px.
     pub(crate) fn length_px(&self) -> f64 {
         self.course().length_px()
     }
@@ -169,7 +169,7 @@ impl Trail {
         Self { range: (stroke, WHOLE), closed, ..Self::default() }
     }
 
-    /// Its legs as they are drawn.
+    /// The legs of the trail in drawing order.
     pub(crate) fn legs(self, all: &[Leg]) -> impl Iterator<Item = Leg> + '_ {
         let (from, to) = self.range;
         let whole = (to == WHOLE).then_some(Leg { stroke: from, start: 0, reversed: self.reversed });

@@ -9,7 +9,7 @@ use core::fmt;
 pub enum DecodeError {
     /// The file cannot be opened or read.
     Unreadable {
-        /// What the system says.
+        /// Message of the operating system.
         what: String,
     },
     /// No bytes at all.
@@ -30,7 +30,7 @@ pub enum DecodeError {
     },
     /// A picture of a kind that is not read.
     Unsupported {
-        /// Which kind.
+        /// The kind of file.
         what: String,
     },
     /// Larger than a picture that is held whole may be.
@@ -46,14 +46,14 @@ pub enum DecodeError {
     },
     /// Decoding it would take too much memory.
     TooMuchMemory {
-        /// What it would take at least, bytes.
+        /// Memory that decoding needs at least, bytes.
         bytes: u64,
     },
     /// Damaged or cut off before the first row is known.
     Damaged {
         /// Length of the file, bytes.
         length: u64,
-        /// What the decoder met.
+        /// Message of the decoder.
         what: String,
     },
     /// Damaged or cut off in a row; those above it have been read.
@@ -62,7 +62,7 @@ pub enum DecodeError {
         row: u32,
         /// Rows of the picture.
         rows: u32,
-        /// What the decoder met.
+        /// Message of the decoder.
         what: String,
     },
 }
@@ -80,7 +80,7 @@ pub enum OtherFile {
 }
 
 impl fmt::Display for OtherFile {
-    /// What it is, and what reads it.
+    /// The format, and a program that reads it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Svg => {

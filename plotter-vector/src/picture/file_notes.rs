@@ -1,4 +1,4 @@
-//! [`FileNotes`]: what a picture file says of itself, without its pixels.
+//! [`FileNotes`]: the metadata of a picture file, read without its pixels.
 
 use crate::picture::file_rows::read_notes;
 use crate::picture::{DecodeError, Ground, Orientation, Resolution};
@@ -39,38 +39,37 @@ impl fmt::Display for FileFormat {
     }
 }
 
-/// What a picture file says of itself, and what was made of it.
+/// Metadata of a picture file: format, size, orientation, resolution and pages.
 ///
 /// ```
 /// # use plotter_vector::picture::{FileFormat, FileNotes};
 /// # use std::io::Cursor;
-/// let notes = FileNotes::read(Cursor::new(b"P4 10 2\n"), 1)?; // the rows are not looked at
+/// let notes = FileNotes::read(Cursor::new(b"P4 10 2\n"), 1)?; // the rows are not read
 /// assert_eq!((notes.format, notes.width_px, notes.height_px), (FileFormat::Pnm, 10, 2));
-/// assert_eq!(notes.resolution, None); // this format knows none
+/// assert_eq!(notes.resolution, None); // this format has none
 /// # Ok::<(), plotter_vector::DecodeError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FileNotes {
-    /// The format, told from the bytes.
+    /// The format, recognized by the first bytes.
     pub format: FileFormat,
     /// Width of the upright picture, px.
     pub width_px: u32,
     /// Height of the upright picture, px.
     pub height_px: u32,
-    /// How the stored picture was turned to be upright.
+    /// How the stored picture is turned or mirrored to be upright.
     pub orientation: Orientation,
-    /// How large its pixels are, if the file says so; whether that can be believed tells
-    /// [`Resolution::mm_per_px`].
+    /// Resolution, if the file states one; [`Resolution::mm_per_px`] tells whether it is plausible.
     pub resolution: Option<Resolution>,
-    /// The page that is read, 1 is the first.
+    /// Number of the page that is read, from 1.
     pub page: u32,
-    /// Pages of the file: pictures of a TIFF that are no smaller copies of others.
+    /// Number of pages: pictures of a TIFF, without smaller copies of others.
     pub pages: u32,
-    /// Whether it moves: then the first of its pictures is read.
+    /// Whether the file is an animation, of which the first picture is read.
     pub is_animated: bool,
-    /// What a transparent picture was laid on; none where nothing can be transparent, and before the pixels
-    /// have been read.
+    /// Background on which a transparent picture was laid; `None` if nothing can be transparent, and before
+    /// the pixels have been read.
     pub ground: Option<Ground>,
 }
 
@@ -89,8 +88,8 @@ impl FileNotes {
         }
     }
 
-    /// Turns what was noted of the stored picture.
-    pub(crate) fn turned(mut self, orientation: Orientation) -> Self {
+    /// Turns size and resolution of the stored picture.
+    pub(crate) fn with_orientation(mut self, orientation: Orientation) -> Self {
         self.orientation = orientation;
         (self.width_px, self.height_px) = orientation.turned_size((self.width_px, self.height_px));
         if let (true, Some(resolution)) = (orientation.swaps_sides(), &mut self.resolution) {
@@ -104,11 +103,11 @@ impl FileNotes {
         self.orientation.turned_size((self.width_px, self.height_px))
     }
 
-    /// Reads what stands before the pixels of a page, 1 is the first.
+    /// Reads the metadata of a page, from 1, up to its pixels.
     ///
     /// # Errors
-    /// [`DecodeError`]; as for [`FileRows::new`](crate::picture::FileRows::new), but what is damaged behind
-    /// the header is not met.
+    /// [`DecodeError`], as for [`FileRows::new`](crate::picture::FileRows::new); damage behind the header is
+    /// not noticed.
     pub fn read(file: impl Read + Seek, page: u32) -> Result<Self, DecodeError> {
         read_notes(file, page)
     }

@@ -36,7 +36,7 @@ impl Orientation {
         u8::try_from(number).ok().filter(|number| (1..=8).contains(number)).map(Self)
     }
 
-    /// Its number, 1 to 8.
+    /// Number in EXIF, 1 to 8.
     #[must_use]
     pub const fn number(self) -> u8 {
         self.0

@@ -46,15 +46,17 @@ impl fmt::Display for ResolutionSource {
     }
 }
 
-/// How many pixels of a picture are a millimetre, as its file says, whatever it says.
+/// Resolution of a picture, pixels per millimetre, as its file states it;
+/// [`mm_per_px`](Self::mm_per_px) tells whether that is plausible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
-    /// Pixels a millimetre along a row and down a column of the upright picture.
+    /// Pixels per millimetre along a row and down a column of the upright picture.
     pub px_per_mm: [f64; 2],
-    /// Where it stands.
+    /// The part of the file that states it.
     pub source: ResolutionSource,
-    /// Whether the file also says that a lens took the picture: then this is not the paper's.
-    pub by_lens: bool,
+    /// Whether the file also has tags of a camera (focal length, aperture, exposure): then the resolution is
+    /// not the paper's.
+    pub has_camera_tags: bool,
 }
 
 /// Why a resolution is not believed.
@@ -100,7 +102,8 @@ impl Resolution {
     ///
     /// ```
     /// # use plotter_vector::picture::{Resolution, ResolutionDoubt, ResolutionSource};
-    /// let mut scan = Resolution { px_per_mm: [12.0; 2], source: ResolutionSource::Tiff, by_lens: false };
+    /// let source = ResolutionSource::Tiff;
+    /// let mut scan = Resolution { px_per_mm: [12.0; 2], source, has_camera_tags: false };
     /// assert_eq!(scan.mm_per_px(), Ok(1.0 / 12.0));
     /// scan.px_per_mm = [2.835; 2]; // 72 dots per inch
     /// assert!(matches!(scan.mm_per_px(), Err(ResolutionDoubt::Screen { .. })));
@@ -115,7 +118,7 @@ impl Resolution {
             return Err(ResolutionDoubt::NotSquare { dpi: [across, down] });
         }
         let dpi = 0.5 * (across + down);
-        if self.by_lens {
+        if self.has_camera_tags {
             return Err(ResolutionDoubt::Camera { dpi });
         }
         if SCREENS_DPI.iter().any(|screen| (dpi - screen).abs() < SCREEN_WITHIN_DPI) {
@@ -190,7 +193,7 @@ mod tests {
         Resolution {
             px_per_mm: [across, down].map(|dpi| dpi / MM_PER_INCH),
             source: ResolutionSource::PngPhys,
-            by_lens: false,
+            has_camera_tags: false,
         }
     }
 
@@ -213,7 +216,7 @@ mod tests {
         let fax = of_dpi(204.0, 98.0);
         assert!(matches!(fax.mm_per_px(), Err(ResolutionDoubt::NotSquare { .. })));
         assert_eq!(fax.to_string(), "204 x 98 dots per inch (pHYs of the PNG)");
-        let photo = Resolution { by_lens: true, ..of_dpi(300.0, 300.0) };
+        let photo = Resolution { has_camera_tags: true, ..of_dpi(300.0, 300.0) };
         assert!(matches!(photo.mm_per_px(), Err(ResolutionDoubt::Camera { .. })));
         assert_eq!(of_dpi(299.9994, 299.9994).to_string(), "300 dots per inch (pHYs of the PNG)");
     }

@@ -82,7 +82,7 @@ pub struct BitmapRows<'a> {
 }
 
 impl<'a> BitmapRows<'a> {
-    /// Its rows from the top.
+    /// Rows of the picture, from the top.
     #[must_use]
     pub const fn new(picture: &'a Bitmap) -> Self {
         Self { picture, next: 0 }
@@ -124,7 +124,7 @@ pub struct GrayRows {
 }
 
 impl GrayRows {
-    /// Its rows from the top.
+    /// Rows of the picture, from the top.
     #[must_use]
     pub const fn new(picture: Gray) -> Self {
         Self { picture, next: 0 }

@@ -1,4 +1,4 @@
-//! How far a drawing lies from the ink, and ink from the drawing.
+//! Distances between a drawing and the ink, in both directions.
 
 pub(crate) mod coverage;
 pub(crate) mod covered_figures;

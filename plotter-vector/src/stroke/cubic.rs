@@ -51,7 +51,7 @@ impl Cubic {
         sum(weights, [self.from, b, c, self.to])
     }
 
-    /// Its speed at t, px per unit of t.
+    /// Derivative at t, px per unit of t.
     pub(crate) fn speed(&self, t: f64) -> PxVec {
         let [b, c] = self.handles;
         let s = 1.0 - t;

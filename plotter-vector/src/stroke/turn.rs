@@ -1,4 +1,4 @@
-//! How sharply a line turns, as the cosine of the angle between what comes and what goes.
+//! Turn of a line at a vertex, as the cosine of the angle between the directions before and after it.
 
 /// A sharper turn is a corner: cos 25°. The least angle of a set square is 30°, and a direction that six
 /// places tell, which are known to half a pixel, is off by up to 5°.

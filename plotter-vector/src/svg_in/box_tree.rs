@@ -55,7 +55,7 @@ impl Bounds {
     }
 }
 
-/// Counts steps, so that no file takes hours.
+/// The budget of work that cutting has: it counts steps, so that no file takes hours.
 #[derive(Debug, Default)]
 pub(super) struct Steps(usize);
 

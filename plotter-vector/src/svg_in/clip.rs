@@ -33,7 +33,7 @@ impl Regions {
         is_even_odd: bool,
     ) -> Result<Shape, SvgError> {
         let shape = Shape::new(path, matrix, is_even_odd, self.tolerance_px, self.max_edges)?;
-        self.count(shape.edges())?;
+        self.count(shape.edge_count())?;
         Ok(shape)
     }
 

@@ -1,4 +1,4 @@
-//! What clip paths, masks and filled shapes take away.
+//! Clip paths, masks and filled shapes: the parts of strokes that they take away.
 
 use super::kind_tests::{line, short};
 use super::tests::{read, read_with};

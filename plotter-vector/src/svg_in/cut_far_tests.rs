@@ -1,4 +1,4 @@
-//! What lies far outside of any sheet is cut off, and the rest is drawn.
+//! Strokes far outside any sheet are cut off, and the rest is drawn.
 
 use super::*;
 use crate::stroke::PxPoint;

@@ -214,7 +214,7 @@ impl<'a> Ink<'a> {
             shape
         } else {
             let around = self.cuts.iter().map(|(region, _)| region.clone());
-            let edges = self.cuts.iter().map(|(region, _)| region.edges()).sum();
+            let edges = self.cuts.iter().map(|(region, _)| region.edge_count()).sum();
             self.regions.count(edges)?;
             Region::All(core::iter::once(shape).chain(around).collect())
         };

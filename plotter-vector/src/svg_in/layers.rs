@@ -18,7 +18,7 @@
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SvgLayer {
-    /// Its name, as the file has it; shortened to 64 bytes.
+    /// Name of the layer in the file, shortened to 64 bytes.
     pub name: String,
     /// The number that its name begins with, 1 to 255; also that of a name as `pen-3`.
     pub number: Option<u8>,

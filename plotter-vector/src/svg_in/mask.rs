@@ -104,7 +104,7 @@ fn over(items: &[Item], at: PxPoint, steps: &mut Steps) -> Rgba {
     let mut below = [0.0; 4];
     for item in items {
         let colour = match item {
-            Item::Fill(shape, colour) if shape.holds(at, steps) => colour.at(at),
+            Item::Fill(shape, colour) if shape.contains(at, steps) => colour.at(at),
             Item::Group { items, opacity, within }
                 if within.iter().all(|region| region.side(at, 0.0, steps) >= super::region::Side::Edge) =>
             {

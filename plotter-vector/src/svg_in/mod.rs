@@ -200,7 +200,7 @@ pub struct SvgProblem {
     pub line: u32,
     /// Letter in the line, from 1.
     pub column: u32,
-    /// What it is, and what was done instead.
+    /// The part of the file, and what was done instead.
     pub text: String,
 }
 

@@ -1,4 +1,4 @@
-//! What CSS and attributes move, as browsers do.
+//! Transforms by CSS and attributes, as browsers apply them.
 
 use super::kind_tests::short;
 use super::tests::{read, read_with};

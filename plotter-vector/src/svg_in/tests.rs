@@ -1,4 +1,4 @@
-//! What each part of the format becomes; what is refused, and how.
+//! Each part of the format and what it becomes; what is refused, and how.
 
 use super::*;
 use crate::stroke::PxPoint;

@@ -1,10 +1,10 @@
-//! The follower over drawings of many kinds, as the example `follow` does it.
+//! The follower follow_paper drawings of many kinds, as the example `follow` does it.
 
 use crate::follow_drawings;
 use crate::follow_figures;
 
 use follow_drawings::drawings;
-use follow_figures::over;
+use follow_figures::follow_paper;
 use plotter_vector::PxPoint;
 use plotter_vector::follow::{CameraSettings, End, MappingSettings, Paper, TableError};
 
@@ -40,7 +40,7 @@ fn drawings_of_many_kinds() {
         let error = TableError { random_px, play_px: 3.0 * random_px, seed: 1 };
         let lines: Vec<_> = drawing.strokes.iter().map(|(line, _)| line.clone()).collect();
         let start = PxPoint::new(0.5 * far.x, 0.5 * far.y);
-        let run = over(&paper, &lines, start, camera, error, settings);
+        let run = follow_paper(&paper, &lines, start, camera, error, settings);
         println!("| {} | {}", drawing.name, run.cells());
         assert_eq!(run.end, End::Complete, "{}", drawing.name);
         let judged = run.judged;

@@ -1,4 +1,4 @@
-//! What a raster of one bit tells about the place of a line along its rows:
+//! How precisely a raster of one bit tells the place of a line along its rows:
 //! `cargo test -p plotter-vector --test level_lines -- --nocapture`.
 #![allow(
     clippy::unwrap_used,

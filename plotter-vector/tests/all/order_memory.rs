@@ -1,4 +1,4 @@
-//! What ordering very many lines takes: a file of another program may have a million of them.
+//! Time and memory of ordering very many lines: a file of another program may have a million of them.
 
 use crate::own_process::{is_alone, peak_kib};
 use plotter_motion::Point;

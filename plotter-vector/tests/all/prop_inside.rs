@@ -1,4 +1,4 @@
-//! What is drawn lies within the picture, whatever the picture.
+//! All strokes lie within the picture, whatever the picture.
 
 use plotter_vector::{
     Algorithm, Colour, Drawing, Gray, Mode, Progress, PxPoint, Vectorizer,

@@ -4,7 +4,8 @@
 use crate::follow_figures;
 
 use follow_figures::{
-    Figure, Run, dense_with, figures, mixed, ours, polyline, published, sharper_tips, wrong_choices,
+    Figure, Run, WrongChoices, dense_with, figures, follow_figure, follow_published, mixed, polyline,
+    sharper_tips, wrong_choices,
 };
 use plotter_vector::PxPoint;
 use plotter_vector::follow::{CameraSettings, End, MappingSettings, TableError};
@@ -25,7 +26,13 @@ fn settings(figure: &Figure) -> MappingSettings {
 
 fn lap(figure: &Figure, error: TableError, seed: u64) -> Run {
     let start = PxPoint::new(300.0, 300.0);
-    ours(figure, start, CameraSettings { seed, ..CameraSettings::default() }, error, settings(figure))
+    follow_figure(
+        figure,
+        start,
+        CameraSettings { seed, ..CameraSettings::default() },
+        error,
+        settings(figure),
+    )
 }
 
 /// A lap of a small figure, under a camera of 160 x 160 px.
@@ -33,9 +40,13 @@ fn small_lap(name: &'static str, lines: &[&[(f64, f64)]], pen_px: f64) -> Run {
     let lines = lines.iter().map(|line| polyline(line)).collect();
     let figure = Figure { name, width: 260, height: 210, lines, pen_px };
     let camera = CameraSettings { width_px: 160, height_px: 160, ..CameraSettings::default() };
-    let run = ours(&figure, PxPoint::new(120.0, 100.0), camera, table(3), settings(&figure));
+    let run = follow_figure(&figure, PxPoint::new(120.0, 100.0), camera, table(3), settings(&figure));
     println!("{name}: {:?} {:?}", run.judged, run.report);
-    assert_eq!((run.end, wrong_choices(&figure, &run.strokes)), (End::Complete, (0, 0)), "{name}");
+    assert_eq!(
+        (run.end, wrong_choices(&figure, &run.strokes)),
+        (End::Complete, WrongChoices::NONE),
+        "{name}"
+    );
     run
 }
 
@@ -96,7 +107,7 @@ fn from_an_end_behind_another_line_the_tool_goes_back_to_where_they_meet() {
         let figure = Figure { name: "end behind", width: 260, height: 210, lines, pen_px: 5.0 };
         let camera = CameraSettings { width_px: 160, height_px: 160, ..CameraSettings::default() };
         let start = PxPoint::new(245.0, 97.0);
-        let run = ours(&figure, start, camera, TableError::default(), settings(&figure));
+        let run = follow_figure(&figure, start, camera, TableError::default(), settings(&figure));
         println!("{:?} {:?}", run.judged, run.report.lifts);
         assert!(run.end == End::Complete && run.judged.coverage > 0.999, "{:?}", run.judged);
         greatest = greatest.max(run.judged.max_px);
@@ -115,7 +126,7 @@ fn at_the_limits_of_the_machine_the_tool_stays_on_the_line() {
         let figure = Figure { name: "limits", width: 460, height: 340, lines, pen_px: 4.0 };
         let camera = CameraSettings { width_px: 160, height_px: 160, seed, ..CameraSettings::default() };
         let error = TableError { random_px: 4.0, play_px: 3.0, seed };
-        let run = ours(&figure, PxPoint::new(230.0, 180.0), camera, error, settings(&figure));
+        let run = follow_figure(&figure, PxPoint::new(230.0, 180.0), camera, error, settings(&figure));
         println!("{:?} {:?} {:?}", run.end, run.judged, run.report);
         greatest = greatest.max(run.judged.max_px);
         leaves += run.report.leaves.len();
@@ -140,7 +151,7 @@ fn a_way_round_bare_walls_comes_back_to_its_beginning() {
     for seed in 0..2 {
         let camera = CameraSettings { width_px: 160, height_px: 160, seed, ..CameraSettings::default() };
         let error = TableError { random_px: 1.5, play_px: 3.0, seed };
-        let run = ours(&figure, PxPoint::new(260.0, 230.0), camera, error, settings(&figure));
+        let run = follow_figure(&figure, PxPoint::new(260.0, 230.0), camera, error, settings(&figure));
         println!("{:?} {:?} {:?}", run.end, run.judged, run.report);
         assert!(run.end == End::Complete && run.judged.coverage > 0.9999, "{seed}: {:?}", run.judged);
         greatest = greatest.max(run.judged.max_px);
@@ -160,7 +171,7 @@ fn lines_that_are_one_under_the_blur_come_to_an_end() {
     let figure = Figure { name: "one", width: 460, height: 340, lines: rows, pen_px: 4.0 };
     for (seed, error) in [(1, TableError::default()), (2, table(2))] {
         let camera = CameraSettings { width_px: 240, height_px: 240, seed, ..CameraSettings::default() };
-        let run = ours(&figure, figure.lines[0][0], camera, error, settings(&figure));
+        let run = follow_figure(&figure, figure.lines[0][0], camera, error, settings(&figure));
         println!("{:?} {:?} {:?}", run.end, run.report, run.judged);
         assert!(run.report.windows < 4000, "{:?} {:?}", run.end, run.report);
     }
@@ -174,7 +185,11 @@ fn every_figure_is_covered_without_a_wrong_choice() {
             let run = lap(figure, table(seed), seed);
             let name = format!("{} {seed}", figure.name);
             println!("{name}: {:?} {:?}", run.judged, run.report);
-            assert_eq!((run.end, wrong_choices(figure, &run.strokes)), (End::Complete, (0, 0)), "{name}");
+            assert_eq!(
+                (run.end, wrong_choices(figure, &run.strokes)),
+                (End::Complete, WrongChoices::NONE),
+                "{name}"
+            );
             assert!(run.judged.coverage > 0.995 && run.judged.rms_px < 0.25, "{name}: {:?}", run.judged);
             assert!(run.judged.max_px < 1.0, "{name}: {:?}", run.judged);
             assert!(run.judged.repeated < 0.02, "{name}: {:?}", run.judged);
@@ -193,7 +208,7 @@ fn an_exact_table_leaves_what_the_picture_leaves() {
         assert_eq!((run.end, run.lost), (End::Complete, 0), "{name}");
         assert!(run.judged.coverage > 0.995 && run.judged.rms_px < 0.12, "{name}: {:?}", run.judged);
         assert!(run.judged.max_px < 1.0, "{name}: {:?}", run.judged);
-        assert_eq!(wrong_choices(&figure, &run.strokes), (0, 0), "{name}");
+        assert_eq!(wrong_choices(&figure, &run.strokes), WrongChoices::NONE, "{name}");
     }
 }
 
@@ -201,9 +216,9 @@ fn an_exact_table_leaves_what_the_picture_leaves() {
 fn the_published_follower_is_never_right_on_dense_lines() {
     let [_, _, _, dense] = figures();
     let start = PxPoint::new(90.0, 80.3);
-    let strokes = published(&dense, start, CameraSettings::default(), table(1), 1.0);
-    let (shortcuts, turns) = wrong_choices(&dense, &strokes);
-    assert!(shortcuts + turns > 5, "{shortcuts} {turns}");
+    let strokes = follow_published(&dense, start, CameraSettings::default(), table(1), 1.0);
+    let wrong = wrong_choices(&dense, &strokes);
+    assert!(wrong.count() > 5, "{wrong:?}");
 }
 
 /// Laps of each figure: the table of `docs/results/line-following.md`. `SEEDS=from..to` are the laps,
@@ -223,11 +238,11 @@ fn laps_of_the_four_figures() {
     {
         for seed in from.parse::<u64>().unwrap()..to.parse().unwrap() {
             let run = lap(figure, table(seed), seed);
-            let (shortcuts, turns) = wrong_choices(figure, &run.strokes);
-            println!("| {} {seed} | {shortcuts}, {turns} | {}", figure.name, run.cells());
+            let wrong = wrong_choices(figure, &run.strokes);
+            println!("| {} {seed} | {}, {} | {}", figure.name, wrong.shortcuts, wrong.turns, run.cells());
             assert_eq!(run.end, End::Complete, "{} {seed}", figure.name);
             let is_good =
-                (shortcuts, turns) == (0, 0) && run.judged.coverage > 0.9999 && run.judged.rms_px <= 0.5;
+                wrong == WrongChoices::NONE && run.judged.coverage > 0.9999 && run.judged.rms_px <= 0.5;
             assert!(!is_promised || is_good, "{} {seed}", figure.name);
         }
     }
@@ -240,15 +255,16 @@ fn published_laps() {
     let seeds = std::env::var("SEEDS").unwrap_or_else(|_| "0..3".to_owned());
     let (from, to) = seeds.split_once("..").unwrap();
     for figure in figures() {
-        let (mut shortcuts, mut turns) = (0, 0);
+        let mut all = WrongChoices::default();
         for seed in from.parse::<u64>().unwrap()..to.parse().unwrap() {
             let camera = CameraSettings { seed, ..CameraSettings::default() };
-            let strokes = published(&figure, figure.lines[0][0], camera, table(seed), 1.0);
+            let strokes = follow_published(&figure, figure.lines[0][0], camera, table(seed), 1.0);
             let wrong = wrong_choices(&figure, &strokes);
-            (shortcuts, turns) = (shortcuts + wrong.0, turns + wrong.1);
+            all.shortcuts += wrong.shortcuts;
+            all.turns += wrong.turns;
         }
-        println!("| {} | {shortcuts} shortcuts, {turns} turned back |", figure.name);
+        println!("| {} | {} shortcuts, {} turned back |", figure.name, all.shortcuts, all.turns);
         // Corners have one way on: there is nothing to choose wrongly.
-        assert!(figure.name == "corners" || shortcuts + turns > 0, "{}", figure.name);
+        assert!(figure.name == "corners" || all.count() > 0, "{}", figure.name);
     }
 }

@@ -1,4 +1,4 @@
-//! What the two firmwares for the ATmega328P share: the board.
+//! The board of both firmwares for the ATmega328P.
 #![no_std]
 
 pub mod board;

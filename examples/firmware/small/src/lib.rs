@@ -1,6 +1,6 @@
-//! What the compiler calls where the processor has no instruction: `f64`, division of 64 bits, memory. The
-//! compiler's own routines are made for speed and take 7.6 KB of flash, these 2.1 KB. Linking the crate puts
-//! them in place of the others:
+//! Functions that the compiler calls where the processor has no instruction: `f64`, 64-bit division, memory.
+//! The compiler's own routines are made for speed and take 7.6 KB of flash, these 2.1 KB. Linking the crate
+//! puts them in place of the others:
 //!
 //! ```text
 //! use small_runtime as _;

@@ -1,5 +1,5 @@
 //! The stepper plotter's firmware in two halves: planning in the main loop, steps from the timer's interrupt.
-//! What the loop does, and for how long, makes no step late.
+//! No step is late, whatever the main loop does and however long it takes.
 //!
 //! The controller is `plotter_motion::firmware::StepperPlotter`, taken apart by its `split`.
 #![no_std]

@@ -1,4 +1,4 @@
-//! What of a firmware belongs to its board, and nothing else does: see "Another board" in the README.
+//! Everything of a firmware that depends on its board: see "Another board" in the README.
 
 #[cfg(feature = "board-qemu")]
 mod qemu;

@@ -1,4 +1,4 @@
-//! Where strokes cross or meet, from their geometry.
+//! Junctions of a drawing, where strokes cross or meet, computed from their geometry.
 
 use super::strokes::{At, Stroke};
 

@@ -42,7 +42,7 @@ pub(crate) enum Look {
 /// A picture and all that is known about it.
 #[derive(Debug)]
 pub struct Picture {
-    /// Its name, and that of its files.
+    /// Name of the picture and of its files.
     pub name: &'static str,
     pub(crate) width: u32,
     pub(crate) height: u32,

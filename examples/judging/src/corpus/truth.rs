@@ -62,7 +62,7 @@ pub struct TrueLine {
     pub color: String,
     /// Whether it ends where it begins.
     pub closed: bool,
-    /// Its vertices: column and row. One is a dot.
+    /// Vertices: column and row. A single one is a dot.
     pub points: Vec<(f64, f64)>,
 }
 

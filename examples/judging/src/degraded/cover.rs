@@ -1,4 +1,4 @@
-//! How much of each pixel the strokes of a drawing cover.
+//! Coverage: the fraction of each pixel that the strokes of a drawing cover.
 //!
 //! The rim of a stroke goes from ink to paper over one pixel across it, as on a sensor whose pixels are as
 //! wide as far apart. `corpus::raster` asks 64 points a pixel instead, which differs at ends and corners only

@@ -55,7 +55,7 @@ impl Kind {
         Self::Newsprint,
     ];
 
-    /// Its name, as in names of files.
+    /// Name in names of files.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -92,7 +92,7 @@ impl Strength {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Weak, Self::Middle, Self::Strong];
 
-    /// Its name, as in names of files.
+    /// Name in names of files.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

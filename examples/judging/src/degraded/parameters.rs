@@ -1,4 +1,4 @@
-//! How strong each kind is, in numbers: the one place where they stand.
+//! Parameters of every kind of degradation, at each strength.
 
 use super::kind::Strength;
 use core::fmt::Write as _;
@@ -8,9 +8,9 @@ use core::fmt::Write as _;
 pub struct Parameter {
     /// The kinds that it belongs to.
     pub kinds: &'static str,
-    /// What it says.
+    /// Meaning.
     pub name: &'static str,
-    /// Its unit. *level* is one of 256 steps from black to white.
+    /// Unit. A *level* is one of 256 steps from black to white.
     pub unit: &'static str,
     /// Weak, middle and strong.
     pub values: [f64; 3],

@@ -1,7 +1,7 @@
 //! [`PenFigures`]: how well each stroke of a sheet has come onto its own pen.
 
 use super::PenSheet;
-use crate::NearLines;
+use crate::NearestLineIndex;
 use crate::judged_drawing::CENTRE_PX;
 use plotter_vector::{Drawing, PxPoint};
 
@@ -78,15 +78,16 @@ impl PenFigures {
             let place = |(x, y): &(f64, f64)| PxPoint::new(x + CENTRE_PX, y + CENTRE_PX);
             own.map(|stroke| stroke.points.iter().map(place).collect()).collect()
         };
-        let index = |lines: &[Vec<PxPoint>]| NearLines::new(lines.iter().map(Vec::as_slice));
-        let meant: Vec<NearLines> = sheet.pens.iter().map(|ink| index(&lines(*ink))).collect();
+        let index = |lines: &[Vec<PxPoint>]| NearestLineIndex::new(lines.iter().map(Vec::as_slice));
+        let meant: Vec<NearestLineIndex> = sheet.pens.iter().map(|ink| index(&lines(*ink))).collect();
         let numbers = drawing.pens();
-        let far = |lines: &NearLines, at: PxPoint| lines.nearest(at).map_or(f64::INFINITY, |(far, _)| far);
+        let far =
+            |lines: &NearestLineIndex, at: PxPoint| lines.nearest(at).map_or(f64::INFINITY, |(far, _)| far);
         let mut drawn: Vec<Vec<Vec<PxPoint>>> = vec![Vec::new(); meant.len()];
         for number in &numbers {
             let own: Vec<Vec<PxPoint>> = drawing.of_pen(*number).strokes().map(<[PxPoint]>::to_vec).collect();
             let pieces: Vec<_> = index(&own).pieces(PIECE_PX).collect();
-            let along = |lines: &NearLines| -> f64 {
+            let along = |lines: &NearestLineIndex| -> f64 {
                 let near = pieces.iter().filter(|piece| far(lines, piece.middle) <= MEANT_PX);
                 near.map(|piece| piece.length_px).sum()
             };
@@ -100,7 +101,7 @@ impl PenFigures {
         let (mut all_px, mut wrong_px) = (0.0, 0.0);
         for (pen, (meant_lines, drawn_lines)) in meant.iter().zip(&drawn).enumerate() {
             let drawn = index(drawn_lines);
-            let share = |lines: &NearLines, others: &NearLines| {
+            let share = |lines: &NearestLineIndex, others: &NearestLineIndex| {
                 let (mut all, mut near) = (0.0, 0.0);
                 for piece in lines.pieces(PIECE_PX) {
                     all += piece.length_px;

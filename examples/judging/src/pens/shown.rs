@@ -59,7 +59,7 @@ impl PenPicture {
         Self::Squared,
     ];
 
-    /// Its name, as in tables.
+    /// Name in tables.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

@@ -2,7 +2,7 @@
 //! table of it.
 
 use plotter_judging::corpus::{Truth, all};
-use plotter_judging::{Judgement, judged_corpus};
+use plotter_judging::{Judgement, judge_corpus};
 use plotter_vector::{Vectorizer, decode, stroke::Bounded};
 use std::io::Cursor;
 
@@ -129,7 +129,7 @@ fn assert_within(figures: &Judgement, bounds: &Bounds) {
 #[test]
 #[ignore = "long: .ci/run has it in release"]
 fn every_picture_of_the_corpus_keeps_its_bounds() {
-    let judged = judged_corpus().unwrap();
+    let judged = judge_corpus().unwrap();
     let rows: String = judged.iter().map(|(truth, figures)| figures.row(&truth.name)).collect();
     print!("{}{rows}", Judgement::HEAD);
     assert_eq!(judged.len(), BOUNDS.len());

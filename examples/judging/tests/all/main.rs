@@ -1,13 +1,13 @@
-//! All integration tests of the package as one program, which is linked once; a module is a subject.
+//! All integration tests of the package as one program, which is linked once. Each module tests one subject.
 //!
-//! `cargo test -p plotter-judging --test all SUBJECT::` runs those of one.
+//! `cargo test -p plotter-judging --test all SUBJECT::` runs the tests of one module.
 
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
     clippy::panic,
     clippy::print_stdout,
-    reason = "a test fails by a panic, and prints its tables"
+    reason = "tests fail by panics and print tables"
 )]
 
 #[path = "../../../tests/all/built_example/mod.rs"]

@@ -21,7 +21,7 @@ use plotter_examples::trace::TraceCommand;
 use plotter_examples::tune::TuneCommand;
 use std::process::ExitCode;
 
-/// Pen plotters: from a picture to strokes, from strokes to motion, and what a machine made of them.
+/// Pen plotters: pictures to strokes, strokes to motion, and recordings of what a machine did.
 #[derive(Debug, Parser)]
 #[command(
     name = "plotter",
@@ -39,7 +39,7 @@ struct Plotter {
     tool: Tool,
 }
 
-/// The tools, in the order in which a drawing meets them.
+/// The tools, in the order in which a drawing passes through them.
 #[derive(Debug, Subcommand)]
 enum Tool {
     Trace(Box<TraceCommand>),
@@ -73,7 +73,7 @@ impl Tool {
     }
 }
 
-/// The whole command line: the tools, and what is done with recordings of a serial line.
+/// The whole command line: the tools, and the commands on recordings of a serial line.
 fn command() -> clap::Command {
     Plotter::command().subcommands(recordings::subcommands())
 }

@@ -21,7 +21,7 @@ pub enum Compensator {
 }
 
 impl Compensator {
-    /// Its response at a place on the unit circle.
+    /// Frequency response at a point of the unit circle.
     pub(super) fn sampled(&self, at: &SamplePoint) -> Complex {
         match self {
             Self::Pid(pid) => {

@@ -36,13 +36,13 @@ impl Complex {
         Self { re: size * libm::cos(angle_rad), im: size * libm::sin(angle_rad) }
     }
 
-    /// Its distance from 0.
+    /// Absolute value.
     #[must_use]
     pub fn size(self) -> f64 {
         libm::hypot(self.re, self.im)
     }
 
-    /// Its angle, -pi to pi; 0 for 0.
+    /// Argument, −π to π; 0 for 0.
     #[must_use]
     pub fn angle_rad(self) -> f64 {
         libm::atan2(self.im, self.re)

@@ -11,7 +11,7 @@ use crate::control::{PositionGains, ShaftModel};
 /// 2.4 edges in a run. Below one edge a run the estimator rests more on its model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContouringFeedback {
-    /// What it believes of motor and load.
+    /// Model of motor and load in the controller.
     pub model: ShaftModel,
     /// Gains of the position loop.
     pub gains: PositionGains,

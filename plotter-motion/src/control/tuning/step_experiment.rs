@@ -69,7 +69,7 @@ pub struct StepExperiment {
     outcome: Option<Result<IdentifiedMotor, TuningError>>,
 }
 
-/// What a [`StepExperiment`] found.
+/// Result of a [`StepExperiment`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IdentifiedMotor {
     /// From duty to counts.

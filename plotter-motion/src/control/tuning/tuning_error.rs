@@ -8,12 +8,12 @@ use core::fmt;
 pub enum TuningError {
     /// The encoder counted nothing under the greatest allowed duty.
     MotorDoesNotTurn {
-        /// That duty, 0 to 1.
+        /// The duty, 0 to 1.
         duty: f64,
     },
     /// The encoder counted backwards under a forward duty.
     EncoderReversed {
-        /// What it counted.
+        /// The counts.
         counts: i32,
     },
     /// Within the allowed travel there are too few counts, or too little time, to see the motor's speed settle.
@@ -41,7 +41,7 @@ pub enum TuningError {
         /// After so long, s.
         after_s: f64,
     },
-    /// What was measured does not look like a motor: no lag or dead time makes a curve like it.
+    /// The measurement does not look like a motor: no lag or dead time makes a curve like it.
     NotAMotor,
     /// No gains of this rule reach the margin.
     MarginOutOfReach {

@@ -1,4 +1,7 @@
-//! What the two tasks tell each other: [`Command`], [`Signal`] and [`Report`].
+//! Messages between the two tasks of a stepper plotter: [`Command`], [`Signal`] and [`Report`].
+//!
+//! The receive side ([`Receive`](super::Receive)) talks to the host; the motion side
+//! ([`Motion`](super::Motion)) plans and steps.
 
 use super::{Activity, Setting};
 use crate::decimal_text::Plain;
@@ -8,67 +11,66 @@ use crate::{
 };
 use core::fmt;
 
-/// What the receive side asks of the motion side, one after the other: through the queue.
+/// A command of the receive side to the motion side; the queue keeps their order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u32)] // a tag of the width of a float costs small processors a second comparison everywhere
 pub enum Command {
-    /// Plans and does this. What follows closely is planned together with it.
+    /// Plans and executes an operation, together with those that follow closely.
     Plot(PlotOp),
-    /// A travel by hand, at this speed in mm/s whatever the share of travels is; [`Signal::JogCancel`] ends
-    /// it.
+    /// A travel by hand. The override of travels does not apply to it; [`Signal::JogCancel`] ends it.
     Jog {
-        /// Where to, mm.
+        /// Target, mm.
         to: Point,
-        /// How fast, above 0; no faster than travels are.
+        /// Speed, mm/s, above 0; it is limited to the machine's travel speed.
         speed_mm_s: f64,
     },
-    /// The next [`Command::Plot`] that goes somewhere ends at this height of a third axis, mm, and z changes
-    /// evenly on its way.
+    /// Height of the third axis, mm, at the end of the next [`Command::Plot`] that moves. z changes linearly
+    /// along its path.
     #[cfg(feature = "third-motor")]
     ToZ(f64),
     /// As [`Command::Jog`], to another height of a third axis.
     #[cfg(feature = "third-motor")]
     JogZ {
-        /// Where to, mm.
+        /// Target, mm.
         to: Point,
-        /// To which height, mm.
+        /// Target of the third axis, mm.
         to_z_mm: f64,
-        /// How fast in space, above 0.
+        /// Speed in space, mm/s, above 0.
         speed_mm_s: f64,
     },
-    /// From here on this holds of the machine; it changes at a standstill. [`Report::Set`] follows.
+    /// Changes a setting of the machine, at standstill; [`Report::Set`] follows.
     Set(Setting),
-    /// As [`Command::Set`], but all of it becomes what the machine was switched on with.
+    /// As [`Command::Set`], but restores all settings that the machine had at power-on.
     Restore,
-    /// Waits until all before is done, then turns the pen's servo there, degrees. What follows waits until
-    /// the pen has settled.
+    /// Waits until everything before it is done, then turns the pen's servo to this angle, 0 to 180 degrees.
+    /// What follows waits until the pen has settled.
     Servo(u8),
-    /// From here on these are the servo's degrees with the pen up and down.
+    /// Changes the servo's angles of the lifted and the lowered pen, 0 to 180 degrees.
     PenAngles {
-        /// Up.
+        /// With the pen up, degrees.
         up_deg: u8,
-        /// Down.
+        /// With the pen down, degrees.
         down_deg: u8,
     },
-    /// Waits until all before is done, lifts the pen and homes; [`Report::Homed`] follows.
+    /// Waits until everything before it is done, lifts the pen and homes; [`Report::Homed`] follows.
     Home,
-    /// Waits until all before is done, then until [`Signal::Resume`].
+    /// Waits until everything before it is done, then until [`Signal::Resume`].
     Pause,
-    /// [`Report::Done`] follows when all before is done and the machine stands.
+    /// [`Report::Done`] follows when everything before it is done and the machine stands.
     Finish,
-    /// As [`Command::Finish`] at the end of a program: speeds and the laser's power are no longer overridden.
+    /// As [`Command::Finish`], at the end of a program: it also ends the overrides of speeds and laser power.
     End,
-    /// The receive side has learned of a stop: what comes from here on was meant for the machine as it stands
-    /// now. After a stop all before this is left out.
+    /// Acknowledges a stop. After a stop the motion side leaves out all commands before this one, for they
+    /// were sent before the receive side knew of it.
     GoOn,
     /// As [`Command::GoOn`], and ends an emergency stop if the button has been released.
     Unlock,
 }
 
 impl Command {
-    /// Whether it moves by hand.
-    #[inline(always)] // so that nothing but the kind is looked at
+    /// Whether it is a move by hand.
+    #[inline(always)] // so that the caller loads the tag alone
     pub(super) const fn is_jog(&self) -> bool {
         #[cfg(feature = "third-motor")]
         if let Self::JogZ { .. } = self {
@@ -78,29 +80,29 @@ impl Command {
     }
 }
 
-/// What the receive side asks at once, past the queue.
+/// A request of the receive side that bypasses the queue and is obeyed at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Signal {
     /// Feed hold: brakes along the path and stands.
     Hold,
-    /// Goes on after a hold or a pause.
+    /// Continues after a hold or a pause.
     Resume,
     /// Stops at once and forgets all commands; [`Report::Stopped`] follows.
     Reset,
-    /// What is moved by hand brakes along its path and is forgotten; [`Report::Jogged`] follows. Nothing else
-    /// is touched.
+    /// Cancels moves by hand: the machine brakes along its path, then [`Report::Jogged`] follows. Other
+    /// commands are not affected.
     JogCancel,
-    /// From here on speeds are this many percent of what they are asked to be.
+    /// Speed overrides, percent of the commanded speeds; 10 to 200 in Grbl's language.
     Speeds {
         /// With the pen down.
         draw_percent: u8,
         /// With the pen up.
         travel_percent: u8,
     },
-    /// From here on the laser has this many percent of the power it is asked to have.
+    /// Laser power override, percent of the commanded power; 10 to 200 in Grbl's language.
     LaserPercent(u8),
-    /// The laser stays off in what has been commanded up to now.
+    /// The laser stays off during everything commanded so far.
     LaserOff,
 }
 
@@ -110,22 +112,22 @@ pub enum Signal {
 pub enum Stop {
     /// The emergency stop button.
     Emergency,
-    /// A limit switch came on the way to it.
+    /// A limit switch closed while the machine moved towards it.
     Limit {
-        /// Of which axis.
+        /// Axis of the switch.
         axis: Axis,
-        /// At which of its ends.
+        /// End of that axis.
         end: Direction,
     },
-    /// A limit switch of the third axis came on the way to it.
+    /// A limit switch of the third axis closed while that axis moved towards it.
     #[cfg(feature = "third-motor")]
     LimitZ {
-        /// At which of its ends.
+        /// End of the axis.
         end: Direction,
     },
     /// [`Signal::Reset`].
     Reset {
-        /// What the machine did then.
+        /// What the machine was doing.
         during: Activity,
     },
 }
@@ -135,6 +137,7 @@ impl fmt::Display for Stop {
         match self {
             Self::Emergency => f.write_str("emergency stop: release the button, then reset"),
             Self::Limit { axis, end } => {
+                // Plain writes a bare text without `str`'s code for width and padding: less flash.
                 let axis = Plain(if *axis == Axis::X { "x" } else { "y" });
                 let end = Plain(if *end == Direction::Minus { "lower" } else { "upper" });
                 write!(f, "axis {axis}: stopped by its {end} limit switch; home the machine")
@@ -149,51 +152,51 @@ impl fmt::Display for Stop {
     }
 }
 
-/// What the motion side tells the receive side.
+/// A message of the motion side to the receive side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Report {
-    /// All before [`Command::Finish`] or [`Command::End`] is done.
+    /// Everything before [`Command::Finish`] or [`Command::End`] is done.
     Done,
-    /// What came of [`Command::Home`].
+    /// Outcome of [`Command::Home`].
     Homed {
-        /// Where the pen is now, mm.
+        /// Position of the pen, mm.
         at: Point,
-        /// How long the axes are, or why it gave up.
+        /// Lengths of the axes, or why homing gave up.
         result: Result<Homed, HomingError>,
     },
     /// Homing gave up at the third axis; the others have not moved.
     #[cfg(feature = "third-motor")]
     NotHomedZ {
-        /// Where the pen is now, mm.
+        /// Position of the pen, mm.
         at: Point,
-        /// Why.
+        /// The reason.
         error: super::ZHomingError,
     },
-    /// Homing gave up where two motors are made square.
+    /// Homing gave up while it squared the two motors of one axis.
     #[cfg(feature = "third-motor")]
     NotSquared {
-        /// Where the pen is now, mm.
+        /// Position of the pen, mm.
         at: Point,
-        /// Why.
+        /// The reason.
         error: super::SquaringError,
     },
-    /// A jog has been cancelled: the machine stands, and leaves out what was commanded until
-    /// [`Command::GoOn`].
+    /// A jog has been cancelled by [`Signal::JogCancel`]: the machine stands, and leaves out commands until
+    /// [`Command::GoOn`]. A jog that ends by itself gives no report.
     Jogged {
-        /// Where the pen is now, mm.
+        /// Position of the pen, mm.
         at: Point,
     },
-    /// What came of [`Command::Set`] or [`Command::Restore`].
+    /// [`Command::Set`] or [`Command::Restore`] has been executed.
     Set {
-        /// Where the pen is now, mm.
+        /// Position of the pen, mm.
         at: Point,
     },
-    /// The machine has been stopped, and has left out what was commanded.
+    /// The machine has been stopped, and has dropped all commands.
     Stopped {
-        /// Where the pen is now, mm.
+        /// Position of the pen, mm.
         at: Point,
-        /// Why.
+        /// The reason.
         why: Stop,
     },
 }

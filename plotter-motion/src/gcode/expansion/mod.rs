@@ -43,7 +43,7 @@ enum Motion {
     Nurbs,
     /// `G73`, `G81` to `G89`: down and up again in each place.
     Cycle,
-    /// What is not carried out. Its ends are gone to.
+    /// A motion that is not carried out; the pen goes to its end.
     Undone,
 }
 

@@ -1,4 +1,4 @@
-//! What a line's words say: whether it moves, and where to.
+//! The meaning of a line's words: whether it moves, and where to.
 
 use super::super::interpreter::{LineInterpreter, Outcomes};
 use super::super::{Block, Error, Modes, PenConvention, Problem, ReadOptions, ServoCommand, Word};

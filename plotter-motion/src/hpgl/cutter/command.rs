@@ -20,7 +20,7 @@ impl Command {
         Self { letters: [first, second], meaning: "unknown" }
     }
 
-    /// What it does, in a few words.
+    /// Effect of the command, in a few words.
     ///
     /// ```
     /// # use plotter_motion::hpgl::cutter::{Dialect, Problem, plot_ops};
@@ -75,7 +75,7 @@ pub(super) enum Form {
     Text,
     LeftOut(&'static str),
     Setting,
-    /// What `!` or `^` begins in CAMM-GL, up to `;` or the end of the line.
+    /// A command that begins with `!` or `^` in CAMM-GL, up to `;` or the end of the line.
     Rest(&'static str),
     /// Nothing of it would be seen.
     Quiet,

@@ -15,30 +15,30 @@ pub struct Error {
     pub problem: Problem,
 }
 
-/// What was not carried out.
+/// Problems in a text for a cutter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Problem {
     /// A command that would draw something and does not here. A notice.
     LeftOut {
-        /// Which one.
+        /// The command.
         command: Command,
-        /// What to do instead.
+        /// The remedy.
         remedy: &'static str,
     },
     /// A command that sets what a pen has not: force, speed, blade. A notice, once for each command.
     Setting {
-        /// Which one.
+        /// The command.
         command: Command,
     },
     /// A line type: the lines are drawn solid. A notice, once.
     Solid {
-        /// Which one.
+        /// The command.
         command: Command,
     },
     /// No such command.
     Unknown {
-        /// Its letters.
+        /// Letters of the command.
         command: Command,
     },
     /// A byte that no command begins with or holds.
@@ -54,23 +54,23 @@ pub enum Problem {
     },
     /// A command that lacks numbers it cannot do without.
     MissingNumbers {
-        /// Which one.
+        /// The command.
         command: Command,
-        /// What it takes.
+        /// The numbers that the command takes, in words.
         expected: &'static str,
     },
     /// A number that the command does not take.
     BadParameter {
-        /// Which one.
+        /// The command.
         command: Command,
         /// The number.
         value: f64,
-        /// What it takes.
+        /// The numbers that the command takes, in words.
         expected: &'static str,
     },
     /// A number without the other one of its pair.
     OddCoordinates {
-        /// Which command.
+        /// The command.
         command: Command,
         /// The lonely number.
         value: f64,

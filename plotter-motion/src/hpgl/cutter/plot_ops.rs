@@ -26,12 +26,12 @@ const USUAL_CHORD_DEG: f64 = 5.0;
 /// Steps to a degree of the angles of GP-GL.
 const TENTHS: f64 = 10.0;
 
-/// What a text of a cutter does not say.
+/// Settings that a text for a cutter leaves open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct ReadOptions {
-    /// Which language it is.
+    /// Language of the text.
     pub dialect: Dialect,
     /// Size of a step, mm, above 0.
     pub step_mm: f64,

@@ -1,4 +1,4 @@
-//! Which command does what: from its first letter over its numbers and bytes to its end.
+//! Executes commands: from the first letter over numbers and bytes to the end.
 
 use super::super::encoded::Decoder;
 use super::super::{Commands, Error, Extension, Mnemonic, Position};

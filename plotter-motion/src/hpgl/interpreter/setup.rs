@@ -1,5 +1,5 @@
-//! What coordinates and lines are: `IN`, `DF`, `IP`, `IR`, `SC`, `RO`, `PS`, `IW`, `LT`, `UL`, `PW`, `PT`,
-//! `WU`, `TL`.
+//! Instructions for coordinates and line types: `IN`, `DF`, `IP`, `IR`, `SC`, `RO`, `PS`, `IW`, `LT`, `UL`,
+//! `PW`, `PT`, `WU`, `TL`.
 
 use super::super::character_set::CharacterSets;
 use super::super::line_type::{LineType, Pattern};

@@ -1,4 +1,4 @@
-//! [`TextJob`]: characters as strokes.
+//! [`TextJob`]: draws the characters of a label, one line at a time.
 
 use super::super::character_set::OWN;
 #[cfg(feature = "font")]
@@ -12,50 +12,51 @@ use crate::Vec2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TextJob {
     pub(super) metrics: Metrics,
-    /// Where the next character stands.
+    /// Origin of the next character, plotter units.
     pub(super) at: Vec2,
-    /// Which of the characters that are kept is next.
+    /// Index of the next character.
     pub(super) next: usize,
     glyph: Option<Glyph>,
 }
 
-/// One character, stroke by stroke.
+/// A character that is being drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Glyph {
     strokes: Strokes,
+    /// Origin of the character, plotter units.
     at: Vec2,
-    /// Where the pen has come to within a stroke, and whether it has marked anything.
+    /// Position of the pen within a stroke, plotter units, and whether the stroke has a line yet.
     pen: Option<(Vec2, bool)>,
 }
 
-/// What is left of a character.
+/// The strokes of a character that are not drawn yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Strokes {
-    /// Of the font, and of its accent.
+    /// From the built-in font: the character's own strokes, and those of its accent.
     Font(&'static [u8], &'static [u8]),
-    /// Of the text's own: which one, and how many of its numbers have been used.
+    /// From a character that the HPGL text has defined (`DL`): its code, and how many of its numbers are used
+    /// up.
     Own(u8, usize),
 }
 
-/// What comes next of a character.
+/// The next element of a character.
 enum Next {
-    /// A stroke begins or goes on there, in widths and heights of a capital letter.
-    Place {
-        x: f64,
-        y: f64,
-        begins: bool,
-    },
-    /// The stroke ends.
+    /// A point of a stroke, as fractions of the width and height of a capital letter. With `begins` it is the
+    /// first of its stroke.
+    Place { x: f64, y: f64, begins: bool },
+    /// The end of a stroke.
     Lift,
+    /// The end of the character.
     End,
 }
 
 impl TextJob {
+    /// A label whose first character has its origin at `at`, plotter units.
     pub(super) fn new(metrics: Metrics, at: Vec2) -> Self {
         Self { metrics, at, next: 0, glyph: None }
     }
 
-    /// The next stretch of a stroke; `None` after the last of `characters`.
+    /// The next line of a stroke; `None` after the last of `characters`.
     pub(super) fn next<const BYTES: usize>(
         &mut self,
         characters: &[u16],
@@ -70,6 +71,7 @@ impl TextJob {
             }
             let character = *characters.get(self.next)?;
             self.next += 1;
+            // The low byte is the character's code; the high byte tells that the text has defined it.
             let [_, byte] = character.to_be_bytes();
             let strokes = if character >= OWN { Strokes::Own(byte, 0) } else { Strokes::of_font(byte) };
             self.glyph = Some(Glyph { strokes, at: self.at, pen: None });
@@ -95,7 +97,7 @@ impl Glyph {
                     return Some(Piece::Line { from, to });
                 }
             }
-            // A stroke of one place is a dot.
+            // A stroke of a single point is a dot.
             if let Some((at, false)) = before {
                 return Some(Piece::Line { from: at, to: at });
             }
@@ -117,6 +119,7 @@ impl Strokes {
 
     fn next<const BYTES: usize>(&mut self, own: &OwnCharacters<BYTES>) -> Next {
         match self {
+            // The font has two bytes for each point, and a blank between strokes: see `font::strokes`.
             Self::Font(strokes, accent) => match **strokes {
                 [x, y, ..] if x != b' ' => {
                     *strokes = strokes.get(2..).unwrap_or(&[]);

@@ -1,4 +1,4 @@
-//! What of a [`Front`] is only there for a third axis: operations that end at another height.
+//! The part of a [`Front`] for a third axis: operations that end at another height.
 
 use super::{Front, RADIUS_ROUNDING, check};
 use crate::extremes::least;

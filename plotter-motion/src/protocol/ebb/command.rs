@@ -45,7 +45,7 @@ impl fmt::Display for EbbCommand {
     }
 }
 
-/// What a drawing becomes for the board.
+/// Elements of a drawing for the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum EbbEvent {

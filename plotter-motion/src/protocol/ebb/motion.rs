@@ -23,7 +23,7 @@ const NEAR_SHARE: f64 = 1e-3;
 /// quarter of a step beside the path.
 const CORNER_STEPS_MS: f64 = 0.5;
 
-/// Which motion commands the board knows.
+/// Motion commands that the board knows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum EbbDialect {
     /// LM with a parameter that clears the accumulators: firmware 2.7.0 and later.
@@ -36,7 +36,7 @@ pub enum EbbDialect {
 /// How a motion is divided into commands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EbbMotionSettings {
-    /// Which commands it is made of.
+    /// Motion commands to use.
     pub dialect: EbbDialect,
     /// How long the machine stands after the pen has been lowered or lifted.
     pub pen_settle: Duration,

@@ -13,7 +13,7 @@ const COARSE_UP_TO_MS: u32 = 30;
 /// Greatest number of steps, and of milliseconds, that the board's SM takes: 24 bits.
 pub(super) const MOST_SM: u32 = 0xFF_FFFF;
 
-/// What one motor does in a command.
+/// Motion of one motor in a command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct MotorRate {
     /// Added to the accumulator in each tick, 2³¹ for a step: [`TICK_HZ`] steps/s are 2³¹.
@@ -70,7 +70,7 @@ impl MotorRate {
 pub struct LowLevelMove {
     /// Both motors.
     pub motors: [MotorRate; 2],
-    /// Which accumulators are set to 0 before: 1 for the first motor's, 2 for the second's, 3 for both.
+    /// Accumulators that are cleared before: 1 for the first motor's, 2 for the second's, 3 for both.
     pub clear: u8,
 }
 

@@ -193,7 +193,7 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
         self.state
     }
 
-    /// What the other side said of itself, once it did.
+    /// Introduction of the other side; `None` before it has come.
     #[must_use]
     pub const fn peer(&self) -> Option<Hello> {
         if self.peer.version > 0 { Some(self.peer) } else { None }
@@ -205,7 +205,7 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
         self.session
     }
 
-    /// What it has been through.
+    /// Counts of frames: whole, damaged, repeated and sent again.
     #[must_use]
     pub const fn counts(&self) -> LinkCounts {
         self.counts

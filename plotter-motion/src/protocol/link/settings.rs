@@ -43,7 +43,7 @@ impl Default for LinkSettings {
     }
 }
 
-/// What a link has been through.
+/// Counters of a link.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LinkCounts {

@@ -1,4 +1,4 @@
-//! What the motors feel of a motion: its acceleration as a vector, against the limit.
+//! Acceleration of a motion as a vector, against the limit.
 #![allow(dead_code, reason = "each test takes what it needs")]
 
 use plotter_motion::{

@@ -1,4 +1,4 @@
-//! Where things are in a picture: drawing, frame, scale bar and legend, in mm with y down.
+//! Layout of a picture: drawing, frame, scale bar and legend, in mm with y down.
 
 use super::{Canvas, CanvasStyle, Layer};
 use plotter_motion::Point;

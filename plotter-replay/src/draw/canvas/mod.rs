@@ -18,14 +18,14 @@ use plotter_motion::{PlotOp, Point, toolpath::chords};
 /// Farthest that an arc's chords may be from it, mm: a tenth of what an eye sees on paper.
 const CHORD_ERROR_MM: f64 = 0.01;
 
-/// What a line on a canvas means. They are drawn in this order, the last on top.
+/// Meanings of lines on a canvas. They are drawn in this order, the last on top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Layer {
-    /// What was meant: broad and pale under the ink, or thin over it.
+    /// The desired line: broad and pale under the ink, or thin over it.
     Desired,
     /// Moves with the pen up: dashed.
     Travel,
-    /// What the motors drew: ink.
+    /// The line that the motors drew: ink.
     Ink,
     /// The same with another pen than the first, by its number from 2 to 8.
     Pen(u8),
@@ -33,7 +33,7 @@ pub enum Layer {
     Resynced,
     /// Ink that is not where it was meant to be.
     Differs,
-    /// What was meant and is not there: dashed.
+    /// A desired line that was not drawn: dashed.
     Undrawn,
 }
 

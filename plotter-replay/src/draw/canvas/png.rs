@@ -27,7 +27,7 @@ pub enum PngError {
     },
     /// The encoder failed.
     Encoder {
-        /// What it says.
+        /// Message of the encoder.
         message: String,
     },
 }

@@ -21,16 +21,16 @@ pub enum Run {
     Steps,
 }
 
-/// What a curve means, which gives its colour.
+/// Meaning of a curve, which gives its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
-    /// What was commanded: grey.
+    /// The commanded value: grey.
     Setpoint,
-    /// What should be: blue, broad and pale.
+    /// The desired value: blue, broad and pale.
     Desired,
-    /// What was: dark.
+    /// The actual value: dark.
     Actual,
-    /// What went wrong: red.
+    /// An error: red.
     Error,
 }
 
@@ -62,7 +62,7 @@ impl Curve {
         Self { label: label.to_owned(), role, run, samples: decimator.finish() }
     }
 
-    /// What is kept.
+    /// Samples that are kept.
     #[must_use]
     pub fn samples(&self) -> &[(Duration, f64)] {
         &self.samples
@@ -72,7 +72,7 @@ impl Curve {
 /// A panel of a chart: curves over one value axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// What the value axis says, with its unit.
+    /// Label of the value axis, with its unit.
     pub label: String,
     /// The curves; the last is on top.
     pub curves: Vec<Curve>,
@@ -81,7 +81,7 @@ pub struct Panel {
 /// Panels over a common time axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
-    /// What stands above it all.
+    /// Title of the chart.
     pub title: String,
     /// From top to bottom.
     pub panels: Vec<Panel>,

@@ -17,7 +17,7 @@ mod trail;
 pub(crate) use desired::Desired;
 pub(crate) use numbers::{along, signed, steps};
 pub use recording::{PageSettings, RecordingPage};
-pub(crate) use spread::spread;
+pub(crate) use spread::pulse_times;
 #[cfg(feature = "live")]
 pub(crate) use trail::{DRAWN, Trail, TrailPoint, pen_bits};
 

@@ -7,7 +7,7 @@ use super::ink_map::InkMap;
 use super::numbers::packed;
 use super::silence::Silences;
 use super::trail::{DIFFERS, DRAWN, Trail, TrailPoint, pen_bits};
-use super::{along, document, signed, spread, steps};
+use super::{along, document, pulse_times, signed, steps};
 use crate::log::{Damage, Event, Header, Record, Summary};
 use crate::virtual_plotter::CountedBy;
 use crate::{PlotterSettings, VirtualPlotter, date, virtual_plotter::Leg};
@@ -251,7 +251,7 @@ impl RecordingPage {
             self.meant.line(line.from, line.to);
         }
         let pen = if is_drawn { DRAWN | pen_bits(leg.pen_number) } else { 0 };
-        for (point, time_us) in leg.points.iter().zip(spread(&leg.points)) {
+        for (point, time_us) in leg.points.iter().zip(pulse_times(&leg.points)) {
             let at = settings.to_sheet(point.at);
             let [x, y] = &mut self.curves.actual;
             x.push(time_us, at.x);

@@ -1,4 +1,4 @@
-//! [`EbbBoard`]: the board of the AxiDraw and of the EggBot.
+//! [`EbbBoard`]: a simulated controller board of the AxiDraw and the EggBot.
 
 mod commands;
 mod motion;
@@ -14,29 +14,29 @@ use plotter_motion::protocol::ebb::TICK_HZ;
 use plotter_motion::{Pen, StepPair};
 use std::collections::VecDeque;
 
-/// Time of a tick.
+/// Length of a tick, 40 µs.
 const TICK: Duration = Duration::from_nanos(1_000_000_000 / TICK_HZ as u64);
-/// Longest line, bytes: what is longer is refused.
+/// Longest line, bytes; a longer one is refused.
 const MOST_LINE: usize = 256;
-/// Bytes of the host that wait behind a command that waits. A board on USB takes none meanwhile, and they
-/// wait at the host.
+/// Most bytes from the host that are held while a command waits. A real board on USB takes none meanwhile, so
+/// that they wait at the host.
 const MOST_WAITING: usize = 65_536;
-/// Sixteenths of a full step.
+/// Most sixteenths of a full step in one step: a full step.
 const MOST_PARTS: u8 = 16;
 
-/// An EBB (EiBotBoard) with firmware 2.8.1, as its commands are documented
-/// (evil-mad.github.io/EggBot/ebb2.html): its lines come in, answers and steps go out.
+/// An EBB (EiBotBoard) with firmware 2.8.1, by the documentation of its commands
+/// (evil-mad.github.io/EggBot/ebb2.html): it takes lines and gives answers and steps.
 ///
-/// - Steps come at ticks of 40 µs, as the documented accumulators make them. Each step is given as so many
-///   sixteenths of a full step as the step mode makes it.
-/// - One command waits behind the one that runs. A third one is answered only when it finds room there, and
-///   no line behind it is looked at before: not even the one that stops.
-/// - The pen's servo goes to where it is sent by its rate, every 24 ms.
-/// - Pressing the emergency stop cuts the motors' supply, as pulling its plug does: the board counts on while
-///   they stand, and QC says so. A switch of the name `prg` is the board's button.
+/// - Steps come at ticks of 40 µs, by the documented accumulators. A step is given as the number of sixteenths
+///   of a full step that the step mode makes of it.
+/// - One command waits behind the running one. A third is answered only when there is room for it, and no line
+///   behind it is read before: not even the one that stops.
+/// - The pen's servo moves at its rate, every 24 ms.
+/// - The emergency stop cuts the motors' supply, as pulling the plug does: the board continues to count while
+///   they stand, and QC reports it. The switch `prg` is the board's button.
 ///
-/// Not there: the analog inputs (A, AC), whole ports (C, I, O), timed readings (T), pulses (PC, PG), memory
-/// (MR, MW) and CK, which are answered as unknown.
+/// Not simulated, and answered as unknown: the analog inputs (A, AC), whole ports (C, I, O), timed readings
+/// (T), pulses (PC, PG), memory (MR, MW) and CK.
 ///
 /// ```
 /// # use plotter_replay::Controller;
@@ -52,13 +52,17 @@ pub struct EbbBoard {
     motion: Motion,
     /// Ticks since the start.
     ticks: u64,
-    /// The line that comes in, and what comes behind it.
+    /// The line so far.
     line: Vec<u8>,
+    /// Bytes that have come and are not read yet.
     input: VecDeque<u8>,
+    /// Whether the last byte ended a line.
     ended_line: bool,
+    /// Actions of the last line that are left to do.
     left: VecDeque<Left>,
+    /// Bytes for the host.
     output: VecDeque<u8>,
-    /// Steps that were made and not fetched.
+    /// Steps made and not fetched yet, each with its sixteenths of a full step.
     steps: VecDeque<(StepPair, u8)>,
     says_ok: bool,
     checks_limits: bool,
@@ -73,7 +77,7 @@ pub struct EbbBoard {
 }
 
 impl EbbBoard {
-    /// The board with its motors' supply, as it starts.
+    /// The board after power-on, with its motors' supply connected.
     #[must_use]
     pub fn switched_on() -> Self {
         Self {
@@ -110,13 +114,13 @@ impl EbbBoard {
         self.has_motor_power
     }
 
-    /// Steps of both motors since they were counted from 0, as QS says them.
+    /// Steps of both motors since their counters were cleared, as QS reports them.
     #[must_use]
     pub const fn counted(&self) -> [i32; 2] {
         self.motion.counted
     }
 
-    /// Starts anew. Time, supply and the nickname stay.
+    /// Restarts the firmware. Time, supply and the nickname are kept.
     fn restart(&mut self) {
         let Self { ticks, has_motor_power, .. } = *self;
         let (nickname, output) = (core::mem::take(&mut self.nickname), core::mem::take(&mut self.output));
@@ -131,7 +135,7 @@ impl EbbBoard {
         Duration::from_nanos(tick.saturating_mul(u64::try_from(TICK.as_nanos()).unwrap_or(1)))
     }
 
-    /// Ticks in which nothing happens are left out.
+    /// Skips ticks in which nothing happens.
     fn skip_to(&mut self, now: Duration) {
         self.ticks = self.ticks.max(Self::whole_ticks(now));
     }
@@ -228,7 +232,7 @@ impl Controller for EbbBoard {
 
     fn tick(&mut self, now: Duration) {
         let to = Self::whole_ticks(now);
-        // Ticks are left out only where nothing but the servo is under way, which has its pulse in this one.
+        // Ticks are skipped only while nothing but the servo moves, and its pulse is in this tick.
         if to <= self.ticks {
             return;
         }

@@ -1,4 +1,4 @@
-//! What the recorded sessions draw, and the machine that they draw it on.
+//! The drawing of the recorded sessions, and its machine.
 
 #![allow(dead_code, clippy::unwrap_used, reason = "each test uses its part of this, and may panic")]
 

@@ -201,7 +201,7 @@ impl<R: Read + Seek> FileRows<R> {
         Self::read_header(FileView::new(file), page, None)
     }
 
-    /// What the file says of itself, and what was made of it.
+    /// Metadata of the file.
     pub const fn notes(&self) -> &FileNotes {
         &self.notes
     }

@@ -77,7 +77,7 @@ fn notes(info: &Info<'_>) -> FileNotes {
         // Without a unit only the shape of a pixel is told, and that it is square is nothing new.
         let is_told = dims.unit == Unit::Meter || dims.xppu != dims.yppu;
         let px_per_mm = per_unit.map(|per_metre| per_metre / 1000.0);
-        is_told.then_some(Resolution { px_per_mm, source: ResolutionSource::PngPhys, by_lens: false })
+        is_told.then_some(Resolution { px_per_mm, source: ResolutionSource::PngPhys, has_camera_tags: false })
     });
     let is_animated = info.animation_control.is_some_and(|control| control.num_frames > 1);
     let notes = FileNotes { resolution, is_animated, ..FileNotes::new(FileFormat::Png, info.size()) };

@@ -4,7 +4,7 @@
 
 use super::codec::Compression;
 use super::file_view::FileView;
-use super::metadata::px_per_mm;
+use super::metadata::to_px_per_mm;
 use super::pixels::{Channels, Pixels, Sample};
 use super::{Refused, one_line};
 use crate::picture::{FileFormat, FileNotes, Orientation, Resolution, ResolutionSource};
@@ -102,7 +102,7 @@ impl Layout {
             ..FileNotes::new(FileFormat::Tiff, (width, height))
         };
         let orientation = u32::try_from(tags.number(Tag::Orientation, 1)?).ok();
-        let notes = notes.turned(orientation.and_then(Orientation::of_number).unwrap_or_default());
+        let notes = notes.with_orientation(orientation.and_then(Orientation::of_number).unwrap_or_default());
         let pixels = pixels(&mut tags)?;
         let compression = compression(tags.number(Tag::Compression, 1)?)?;
         let differences = match tags.number(Tag::Predictor, 1)? {
@@ -207,9 +207,10 @@ fn resolution<R: Read + Seek>(decoder: &mut Decoder<BufReader<FileView<R>>>) -> 
     let unit = decoder.find_tag_unsigned::<u32>(Tag::ResolutionUnit).ok().flatten();
     let exif = decoder.find_tag(Tag::ExifDirectory).ok().flatten().and_then(|at| at.into_ifd_pointer().ok());
     let exif = exif.and_then(|at| decoder.read_directory(at).ok());
-    let by_lens = exif.is_some_and(|exif| OF_A_LENS.iter().any(|tag| exif.contains(Tag::Unknown(*tag))));
-    let px_per_mm = px_per_mm(both, unit.unwrap_or(2))?;
-    Some(Resolution { px_per_mm, source: ResolutionSource::Tiff, by_lens })
+    let has_camera_tags =
+        exif.is_some_and(|exif| OF_A_LENS.iter().any(|tag| exif.contains(Tag::Unknown(*tag))));
+    let px_per_mm = to_px_per_mm(both, unit.unwrap_or(2))?;
+    Some(Resolution { px_per_mm, source: ResolutionSource::Tiff, has_camera_tags })
 }
 
 /// `Compression`, sections 8 to 11 and 13; Deflate from the technical note of 1995.

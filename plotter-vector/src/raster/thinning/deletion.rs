@@ -1,4 +1,4 @@
-//! Which pixels a step may delete, judged on the eight neighbours of 64 pixels at a time.
+//! Selects the pixels that a thinning step may delete, by the eight neighbours of 64 pixels at a time.
 //!
 //! A pixel is *simple* when deleting it changes neither the 8-connected ink components nor the 4-connected
 //! paper: C = 1 below. That holds for one pixel; for many at once it is enough, by C. Ronse, "Minimal test

@@ -1,4 +1,4 @@
-//! Which tips of ink are still shrinking, and which are ends of strokes.
+//! Tells tips of ink that are still shrinking from ends of strokes.
 
 /// Rows above and below that [`shrinking`] looks at.
 pub(super) const REACH: u32 = 3;

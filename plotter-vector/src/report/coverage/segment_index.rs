@@ -1,4 +1,4 @@
-//! [`Index`]: the segments of a drawing by place.
+//! [`Index`]: finds the segments of a drawing near a point, by a grid of squares.
 
 use super::pen_segment::{Bend, PenSegment};
 use super::pen_widths::pen_half_px;
@@ -8,32 +8,33 @@ use core::ops::Range;
 /// Side of the squares in which segments are looked up, px.
 pub(super) const CELL_PX: u32 = 32;
 
-/// Farthest that the chords by which an arc is looked up lie from it, px: far less than a square.
+/// Greatest distance of an arc from the chords by which it is entered into squares, px: far less than a
+/// square.
 const CHORD_ERROR_PX: f64 = 1.0;
 
-/// The segments of a drawing by squares of the picture.
+/// The segments of a drawing, with a list of those in each square of the picture.
 #[derive(Debug)]
 pub(crate) struct Index {
     pub(super) segments: Vec<PenSegment>,
-    /// How far the pen of most of the lines covers, px.
+    /// Half the pen width of most lines, px.
     pub(crate) pen_half_px: f64,
-    /// How much nearer than its squares a segment's error may be: its half width, and that an arc lies beside
-    /// its chords.
+    /// How much smaller a segment's error may be than the distance of its squares, px: half of its width, and
+    /// the distance of an arc from its chords.
     reach_px: f64,
     columns: u32,
     rows: u32,
-    /// One past the last entry of each square.
+    /// For each square the end of its list in `entries`; it begins where the one before ends.
     ends: Vec<usize>,
-    /// Indices of segments, square by square.
+    /// Numbers of segments, square by square.
     entries: Vec<u32>,
 }
 
 impl Index {
-    /// Of a picture of this size.
+    /// The index of `segments` in a picture of `width` by `height` px.
     pub(crate) fn new(segments: Vec<PenSegment>, width: u32, height: u32) -> Self {
         let columns = width.div_ceil(CELL_PX).max(1);
         let rows = height.div_ceil(CELL_PX).max(1);
-        // Counted first, then filled: two vectors, whatever the drawing.
+        // Entries are counted first and filled in afterwards, so that two vectors are enough.
         let mut ends = vec![0_usize; columns as usize * rows as usize];
         for segment in &segments {
             for_each_square(segment, columns, rows, |square| {
@@ -64,13 +65,14 @@ impl Index {
         Self { segments, pen_half_px, reach_px: widest_px + CHORD_ERROR_PX, columns, rows, ends, entries }
     }
 
+    /// Numbers of the segments in a square.
     fn square(&self, column: u32, row: u32) -> &[u32] {
         let index = row as usize * self.columns as usize + column as usize;
         let start = index.checked_sub(1).and_then(|before| self.ends.get(before)).copied().unwrap_or(0);
         self.ends.get(index).and_then(|end| self.entries.get(start..*end)).unwrap_or(&[])
     }
 
-    /// The segments whose pens may reach into some rows of the picture, within one row of squares.
+    /// The segments whose pens may reach into these rows of the picture, which lie in one row of squares.
     pub(super) fn near(&self, rows: &Range<u32>) -> Vec<&PenSegment> {
         #[expect(
             clippy::cast_possible_truncation,
@@ -88,15 +90,15 @@ impl Index {
         near.into_iter().filter_map(|index| self.segments.get(index as usize)).collect()
     }
 
-    /// How far to its side the segment that covers a place best covers the ink, px.
+    /// Half width at `at` of the segment that covers this point best, px.
     pub(crate) fn slack_px(&self, at: PxPoint) -> f64 {
         let mut nearest = 0;
         self.error_px(at, &mut nearest);
         self.segments.get(nearest).map_or(0.0, |segment| segment.slack_at(at))
     }
 
-    /// Tells the pixels of a run of ink in row `y` of the picture that have an error, from the left, and
-    /// counts those that have none. `covering` is as with [`Self::error_px`].
+    /// Hands the pixels of a run of ink in row `y` that have an error to `add`, from the left, and returns
+    /// the number of those without. `covering` is as in [`Self::error_px`].
     pub(crate) fn run_errors(
         &self,
         run: Range<u32>,
@@ -121,8 +123,8 @@ impl Index {
         exact
     }
 
-    /// One past the last pixel of a run whose first one has no error that a segment covers, too. What a
-    /// straight segment covers is convex: all pixels between two that lie inside by more than is rounded.
+    /// The end of those pixels of a run that a segment covers; the first one has no error. A straight segment
+    /// covers a convex area, so all pixels between two covered ones are covered: the end is found by halving.
     fn covered_to(&self, run: Range<u32>, y: u32, segment: usize) -> u32 {
         let (mut covered, mut open) = (run.start, run.end);
         let Some(segment) = self.segments.get(segment) else { return covered + 1 };
@@ -144,8 +146,10 @@ impl Index {
         open
     }
 
-    /// The least error of a place over all segments. `covering` is one that covered another place, mostly
-    /// this one too: nothing lies nearer than that; it becomes the one that covers this place best.
+    /// The least error of a point over all segments, px.
+    ///
+    /// `covering` is the segment that covered the point before. It is tried first, for it mostly covers this
+    /// one too, and becomes the segment that covers this point best.
     pub(crate) fn error_px(&self, at: PxPoint, covering: &mut usize) -> f64 {
         if self.segments.is_empty() {
             return at.distance(PxPoint::default());
@@ -158,7 +162,7 @@ impl Index {
         let (column, row) = ((at.x / f64::from(CELL_PX)) as u32, (at.y / f64::from(CELL_PX)) as u32);
         let mut least = f64::INFINITY;
         let mut ring = 0;
-        // How far a place is from a row or column of squares.
+        // Distance of a coordinate from a row or column of squares.
         let away = |square: u32, v: f64| {
             let low = f64::from(square) * f64::from(CELL_PX);
             (low - v).max(v - low - f64::from(CELL_PX))
@@ -196,8 +200,8 @@ impl Index {
     }
 }
 
-/// The squares in which a segment is looked up; those of an arc's chords, which lie less beside it than
-/// squares that hold nothing make the search go on.
+/// Visits the squares into which a segment is entered; for an arc those of its chords, whose distance from
+/// the arc the search allows for (`reach_px`).
 fn for_each_square(segment: &PenSegment, columns: u32, rows: u32, mut visit: impl FnMut(usize)) {
     let Bend::Arc(arc) = &segment.bend else {
         for_each_touched((segment.from, segment.to), columns, rows, &mut visit);
@@ -212,7 +216,7 @@ fn for_each_square(segment: &PenSegment, columns: u32, rows: u32, mut visit: imp
     }
 }
 
-/// The squares that a segment's bounding boxes touch, piece by piece so that a long slope takes few.
+/// Visits the squares that a line touches, row by row, so that a long slope has few.
 fn for_each_touched((from, to): (PxPoint, PxPoint), columns: u32, rows: u32, visit: &mut impl FnMut(usize)) {
     let side = f64::from(CELL_PX);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]

@@ -1,4 +1,4 @@
-//! Which vertices of a polyline are corners of the line that it stands for.
+//! Finds the vertices of a polyline that are corners of the drawn line.
 
 use super::promise::Promise;
 use crate::stroke::{MAX_REACH_PX, PxPoint, PxVec, turn::GOES_ON_COS};

@@ -1,4 +1,4 @@
-//! What files say beside their pixels: how they are turned, how large they are, which of their pages, and
+//! Metadata of picture files: how they are turned, how large they are, which of their pages, and
 //! what is seen through them.
 
 use super::pictures::{

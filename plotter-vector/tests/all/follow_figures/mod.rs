@@ -1,4 +1,5 @@
-//! The four kinds of figure that the thesis tests with, drawn after its description, and runs over them.
+//! Figures for line followers, and runs over them: the four kinds of figure of C. Ekholm's thesis (Kajaani,
+//! 2005), drawn after its description, and others.
 #![allow(unreachable_pub, dead_code, reason = "shared by tests, not an interface")]
 
 use plotter_vector::PxPoint;
@@ -24,6 +25,7 @@ impl Figure {
     }
 }
 
+/// A line through these points, px.
 pub fn polyline(places: &[(f64, f64)]) -> Vec<PxPoint> {
     places.iter().map(|(x, y)| PxPoint::new(*x, *y)).collect()
 }
@@ -59,7 +61,7 @@ pub fn tips() -> Figure {
         let x = 120.0 + 70.0 * f64::from(i);
         line.push((x, if i % 2 == 0 { 90.0 + 4.0 * f64::from(i) } else { 470.0 - 9.0 * f64::from(i) }));
     }
-    // Tips of 18 degrees so far; then 15, 12 and 10.
+    // Tips of 21 to 26 degrees so far; then 15.6, 12.7 and 11.0.
     line.extend([(660.3, 84.0), (700.2, 420.5), (734.6, 90.7), (766.4, 450.1)]);
     Figure { name: "tips", width: 880, height: 560, lines: vec![polyline(&line)], pen_px: 5.0 }
 }
@@ -81,12 +83,13 @@ pub fn junctions() -> Figure {
     Figure { name: "junctions", width: 720, height: 660, lines, pen_px: 5.0 }
 }
 
-/// (d) Dense parallel lines: one to and fro with square turns, and hatching beside it; as much paper between
-/// lines as they are wide.
+/// (d) Dense parallel lines: one serpentine with square turns, and hatching beside it. The paper between
+/// lines is as wide as they are.
 pub fn dense() -> Figure {
     dense_with(4.0, 4.0, false)
 }
 
+/// As [`dense`], with lines and gaps of these widths; the serpentine's turns are half circles if `is_round`.
 pub fn dense_with(pen_px: f64, gap_px: f64, is_round: bool) -> Figure {
     let pitch = pen_px + gap_px;
     let mut snake = Vec::new();
@@ -112,11 +115,12 @@ pub fn dense_with(pen_px: f64, gap_px: f64, is_round: bool) -> Figure {
     Figure { name, width: 520, height: 620, lines, pen_px }
 }
 
+/// The four kinds of figure of the thesis, (a) to (d).
 pub fn figures() -> [Figure; 4] {
     [corners(), tips(), junctions(), dense()]
 }
 
-/// Tips of 9, 7, 5 and 3 degrees: the ink of the last one's arms is one over 80 px.
+/// Tips of 13, 9, 7, 5, 3 and 21 degrees. The ink of both arms of the sharpest merges over 80 px.
 pub fn sharper_tips() -> Figure {
     let mut line = vec![(60.3, 420.4)];
     let mut x = 110.2;
@@ -150,7 +154,7 @@ pub fn mixed() -> Figure {
     Figure { name: "mixed", width: 880, height: 700, lines, pen_px: 4.0 }
 }
 
-/// What came of a run.
+/// Result of a run.
 #[derive(Clone, Debug)]
 pub struct Run {
     pub end: End,
@@ -179,19 +183,19 @@ impl Run {
     }
 }
 
-/// Lets ours follow a figure from a place.
-pub fn ours(
+/// Lets [`MappingFollower`], ours, follow a figure from `start`.
+pub fn follow_figure(
     figure: &Figure,
     start: PxPoint,
     camera: CameraSettings,
     table: TableError,
     settings: MappingSettings,
 ) -> Run {
-    over(&figure.paper(), &figure.lines, start, camera, table, settings)
+    follow_paper(&figure.paper(), &figure.lines, start, camera, table, settings)
 }
 
-/// Lets ours follow the lines of a paper from a place.
-pub fn over(
+/// Lets [`MappingFollower`] follow the lines of a paper from `start`.
+pub fn follow_paper(
     paper: &Paper,
     lines: &[Vec<PxPoint>],
     start: PxPoint,
@@ -215,8 +219,8 @@ pub fn over(
     Run { end, report: follower.report(), judged, strokes: table.strokes().to_vec(), lost }
 }
 
-/// Lets the published follower go over a figure until the tool's way is as long as its lines so many times.
-pub fn published(
+/// Lets [`PublishedFollower`] follow a figure until the tool has gone `laps` times the length of all lines.
+pub fn follow_published(
     figure: &Figure,
     start: PxPoint,
     camera: CameraSettings,
@@ -228,13 +232,13 @@ pub fn published(
     // It takes pictures until there is a line, as published.
     let settings = PublishedSettings { max_tries: u32::MAX, ..PublishedSettings::default() };
     let mut follower = PublishedFollower::new(settings);
-    let lines: f64 = figure.lines.iter().map(|line| length(line)).sum();
-    // A window takes it 100 px on, or it is stuck.
-    let mut windows = 0.0;
-    while windows < laps * lines / 50.0 {
-        windows += 1.0;
-        let way: f64 = table.strokes().iter().map(|stroke| length(stroke)).sum();
-        if way > laps * lines {
+    let wanted_px: f64 = laps * figure.lines.iter().map(|line| length(line)).sum::<f64>();
+    // A window takes the tool some 100 px on; one that has needed twice as many windows is stuck.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some hundred windows")]
+    let most_windows = (2.0 * wanted_px / 100.0).ceil() as u32;
+    for _ in 0..most_windows {
+        let gone_px: f64 = table.strokes().iter().map(|stroke| length(stroke)).sum();
+        if gone_px > wanted_px {
             break;
         }
         let window = camera.window(table.place());
@@ -245,74 +249,118 @@ pub fn published(
     table.strokes().to_vec()
 }
 
+/// Length of a line, px.
 pub fn length(line: &[PxPoint]) -> f64 {
     line.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
 }
 
-/// Wrong choices of a tool on its way: shortcuts (more than 4 px of way outside of the ink) and turning back
-/// on a line elsewhere than at its ends. In a sharp tip the arms' ink is one, and which arm the tool is on
-/// shows behind it only.
-pub fn wrong_choices(figure: &Figure, strokes: &[Vec<PxPoint>]) -> (u32, u32) {
+/// Wrong choices of a tool on its way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WrongChoices {
+    /// Ways of more than [`SHORTCUT_PX`] outside the ink.
+    pub shortcuts: u32,
+    /// Times that the tool turned back on a line elsewhere than at its ends.
+    pub turns: u32,
+}
+
+impl WrongChoices {
+    pub const NONE: Self = Self { shortcuts: 0, turns: 0 };
+
+    /// Both kinds together.
+    pub fn count(self) -> u32 {
+        self.shortcuts + self.turns
+    }
+}
+
+/// Least way outside the ink that counts as a shortcut, px: nearly a pen's width of 5.
+const SHORTCUT_PX: f64 = 4.0;
+/// Tips sharper than this, 60 degrees, are left out near their vertex, rad.
+const SHARP_RAD: f64 = 1.05;
+/// Radius of the camera's blur, by which merged ink of a tip reaches farther than its arms touch, px.
+const BLUR_PX: f64 = 6.0;
+/// Least way back along a line that counts as turning, and the surroundings of a line's end where turning is
+/// right, px: twice the blur.
+const TURN_PX: f64 = 12.0;
+/// A tool whose place on a line jumps by more than this has come to it anew, px: more than a window's way.
+const JUMP_PX: f64 = 130.0;
+
+/// Where a tool is on a line.
+#[derive(Clone, Copy)]
+struct OnLine {
+    /// Number of the line.
+    line: usize,
+    /// How far along the line the tool was at most, in its direction, px.
+    farthest: f64,
+    /// 1 along the line, -1 against it, 0 if not known yet.
+    direction: f64,
+}
+
+impl OnLine {
+    /// The tool is next at `along` px of the same line; returns whether it has turned back.
+    fn advance(&mut self, along: f64) -> bool {
+        let step = along - self.farthest;
+        if self.direction == 0.0 {
+            if step.abs() > TURN_PX {
+                (self.farthest, self.direction) = (along, step.signum());
+            }
+            return false;
+        }
+        let has_turned = step * self.direction < -TURN_PX;
+        if has_turned {
+            self.direction = -self.direction;
+        }
+        if has_turned || step * self.direction > 0.0 {
+            self.farthest = along;
+        }
+        has_turned
+    }
+}
+
+/// Counts the wrong choices of `strokes` that follow a figure. Near a sharp tip the ink of both arms merges,
+/// so points there are not judged.
+pub fn wrong_choices(figure: &Figure, strokes: &[Vec<PxPoint>]) -> WrongChoices {
     let route = Route::of(&figure.lines);
     let ends: Vec<PxPoint> = figure.lines.iter().flat_map(|line| [line[0], line[line.len() - 1]]).collect();
-    let sharp: Vec<(PxPoint, f64)> = figure
-        .lines
-        .iter()
-        .flat_map(|line| line.windows(3))
+    let sharp = sharp_tips(figure);
+    let outside_px = 0.5 * figure.pen_px + 1.0;
+    let mut wrong = WrongChoices::default();
+    for stroke in strokes {
+        let mut gone_outside_px = 0.0;
+        let mut on: Option<OnLine> = None;
+        for pair in stroke.windows(2) {
+            let at = pair[1];
+            let Some((_, line, along)) = route.nearest(at, outside_px) else {
+                let before = gone_outside_px;
+                gone_outside_px += pair[0].distance(at);
+                wrong.shortcuts += u32::from(before <= SHORTCUT_PX && gone_outside_px > SHORTCUT_PX);
+                continue;
+            };
+            gone_outside_px = 0.0;
+            if sharp.iter().any(|(tip, reach_px)| tip.distance(at) < *reach_px) {
+                continue;
+            }
+            let is_near_end = ends.iter().any(|end| end.distance(at) < TURN_PX);
+            match &mut on {
+                Some(on) if on.line == line && (along - on.farthest).abs() < JUMP_PX && !is_near_end => {
+                    wrong.turns += u32::from(on.advance(along));
+                }
+                _ => on = Some(OnLine { line, farthest: along, direction: 0.0 }),
+            }
+        }
+    }
+    wrong
+}
+
+/// The sharp tips of a figure, and how far from each the ink of its arms merges, px.
+fn sharp_tips(figure: &Figure) -> Vec<(PxPoint, f64)> {
+    let corners = figure.lines.iter().flat_map(|line| line.windows(3));
+    corners
         .filter_map(|three| {
             let a = (three[0].x - three[1].x, three[0].y - three[1].y);
             let b = (three[2].x - three[1].x, three[2].y - three[1].y);
             let angle = ((a.0 * b.0 + a.1 * b.1) / (a.0.hypot(a.1) * b.0.hypot(b.1))).acos();
-            // As far as the arms' ink is one, and the camera's blur.
-            (angle < 1.05).then(|| (three[1], 0.5 * figure.pen_px / (0.5 * angle).sin() + 6.0))
+            let merged_px = 0.5 * figure.pen_px / (0.5 * angle).sin();
+            (angle < SHARP_RAD).then_some((three[1], merged_px + BLUR_PX))
         })
-        .collect();
-    let outside_px = 0.5 * figure.pen_px + 1.0;
-    let (mut shortcuts, mut turns) = (0, 0);
-    for stroke in strokes {
-        let mut outside = 0.0;
-        // The line that the tool is on, where it was farthest along it, and which way it goes.
-        let mut on: Option<(usize, f64, f64)> = None;
-        for pair in stroke.windows(2) {
-            let at = pair[1];
-            let near = route.nearest(at, outside_px);
-            if near.is_none() {
-                let before = outside;
-                outside += pair[0].distance(at);
-                if before <= 4.0 && outside > 4.0 {
-                    shortcuts += 1;
-                }
-                continue;
-            }
-            outside = 0.0;
-            let Some((_, line, along)) = near else { continue };
-            if sharp.iter().any(|(tip, reach_px)| tip.distance(at) < *reach_px) {
-                continue;
-            }
-            let near_end = ends.iter().any(|end| end.distance(at) < 12.0);
-            on = match on {
-                Some((same, farthest, way))
-                    if same == line && (along - farthest).abs() < 130.0 && !near_end =>
-                {
-                    let ahead = (along - farthest) * way;
-                    if way == 0.0 {
-                        if (along - farthest).abs() > 12.0 {
-                            Some((line, along, (along - farthest).signum()))
-                        } else {
-                            on
-                        }
-                    } else if ahead > 0.0 {
-                        Some((line, along, way))
-                    } else if -ahead > 12.0 {
-                        turns += 1;
-                        Some((line, along, -way))
-                    } else {
-                        on
-                    }
-                }
-                _ => Some((line, along, 0.0)),
-            };
-        }
-    }
-    (shortcuts, turns)
+        .collect()
 }

@@ -1,4 +1,4 @@
-//! How far what was found of straight lines is from them.
+//! Distance of found strokes from the straight lines that were drawn.
 #![allow(unreachable_pub, reason = "shared by tests, not an interface")]
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "lengths of a few hundred px")]
 

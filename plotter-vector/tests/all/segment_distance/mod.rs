@@ -1,4 +1,4 @@
-//! How far a place is from a straight piece of a line.
+//! Distance of a point from a segment.
 
 use plotter_vector::PxPoint;
 

@@ -1,6 +1,6 @@
 //! [`Bench`]: the emulated UART1, on which the bench tells what happens and asks how far its time may go.
 //!
-//! What is told is a row of records:
+//! The bench receives records:
 //!
 //! ```text
 //!   1 byte    kind, and 16 times the microseconds since the record before, at most 15

@@ -1,4 +1,4 @@
-//! What every simulated machine has: the serial line to its host, and the bench that watches it.
+//! Connections of every simulated machine: the serial line to its host, and the bench that watches it.
 
 use super::bench::{Bench, Told};
 use super::line::Line;

@@ -21,7 +21,7 @@ pub mod gantry;
 mod line;
 pub mod pins;
 pub mod plotter;
-mod start;
+mod setup;
 
 use stm32f4xx_hal::pac;
 

@@ -91,10 +91,10 @@ pub fn take() -> Option<Parts> {
         pac::Peripherals::take()?;
     let was_bitten = RCC.csr().read().wdgrstf().bit_is_set();
     RCC.csr().modify(|_, w| w.rmvf().set_bit());
-    start::clocks(&FLASH, &RCC);
-    start::pins(&GPIOA, &GPIOB);
-    start::timers(&TIM1, &TIM3, &TIM2, SERVO_STEPS, LASER_PERIOD_US);
-    start::serial::<{ machine::PLOTTER_BAUD }>(&USART2);
+    setup::set_up_clocks(&FLASH, &RCC);
+    setup::set_up_pins(&GPIOA, &GPIOB);
+    setup::set_up_timers(&TIM1, &TIM3, &TIM2, SERVO_STEPS, LASER_PERIOD_US);
+    setup::set_up_serial::<{ machine::PLOTTER_BAUD }>(&USART2);
     let motor = |step, dir| StepperPins { step: PinB::new(step), dir: PinB::new(dir) };
     Some(Parts {
         x: motor(12, 13),

@@ -8,26 +8,32 @@
 //! ```
 //!
 //! [`StepperPlotter::poll`](super::StepperPlotter::poll) plans and steps in one call, so a main loop that is
-//! away for a while makes its steps late. Taken apart by
-//! [`StepperPlotter::split`](super::StepperPlotter::split), the same controller is asked for its steps ahead
-//! of their time, and they wait in [`StepsAhead`], where a main loop that is away does no harm. All else is
-//! the same: what is answered, and when, what the host is told of the place, which is that of the steps
-//! really made, and every step at its tick.
+//! blocked for a while makes its steps late. [`StepperPlotter::split`](super::StepperPlotter::split) takes
+//! the same controller apart: steps are planned ahead of their time and wait in [`StepsAhead`], so a blocked
+//! main loop delays none. All else is the same:
+//!
+//! - answers to the host, and when they are sent;
+//! - the position that the host is told, which is that of the steps really made;
+//! - the tick of every step.
+//!
+//! `StepsAhead<N>` holds `N` words of 2 bytes; a step takes one, or a little more. A rule of thumb: `N` is at
+//! least the steps that the fastest move makes while the main loop is blocked, and those of braking from full
+//! speed.
 //!
 //! # When the steps run out
 //!
-//! A main loop that is away for longer than there are steps does not stop the motors dead. The machine is
-//! never faster than it can brake on the steps that are there: before they are too few, the times between
-//! them are stretched, it comes to rest on the path, and speeds up again when there are more, with no more
-//! than its acceleration on lines, and where it curves with what turning leaves of that.
-//! [`Planning::underruns`] tells of it. A limit of the jerk does not hold then. A memory that is too small
-//! for the greatest speed does the same: the machine is slower, and says so.
+//! If the main loop is blocked for longer than the steps last, the motors do not stop dead. The machine is
+//! never faster than it can brake within the steps that are waiting. When few are left, the intervals between
+//! them are stretched until it rests on the path; when there are more, it speeds up again. On lines it uses
+//! its full acceleration, on curves what the centripetal acceleration leaves. [`Planning::underruns`] counts
+//! such steps. A jerk limit is not kept in this case. A memory that is too small for the greatest speed does
+//! the same: the machine is slower, and the counters say so.
 //!
 //! # Stops
 //!
-//! The emergency stop, a limit switch and a reset by the host end the steps in the interrupt, whatever waits:
-//! [`Stepping`] has the machine's [`SafetyGate`](crate::SafetyGate). A feed hold and the end of a jog brake
-//! along the path behind the steps that wait, as Grbl's do behind its segments.
+//! The emergency stop, a limit switch and a reset by the host end the steps in the interrupt, whatever is
+//! queued: [`Stepping`] has the machine's [`SafetyGate`](crate::SafetyGate). A feed hold and the end of a jog
+//! brake along the path after the steps already queued, as Grbl's do after its segments.
 //!
 //! ```
 //! # use core::time::Duration;
@@ -43,7 +49,7 @@
 //! let mut steps = 0;
 //! for now_us in (0..1_000_000_u32).step_by(10) {
 //!     let now = Duration::from_micros(now_us.into());
-//!     if now_us % 30_000 == 0 { // a main loop that comes every 30 ms
+//!     if now_us % 30_000 == 0 { // a main loop that comes every 30 ms; the queue holds all of this line
 //!         while planning.plan(now) {}
 //!         while planning.transmit(now).is_some() {} // to the host
 //!     }
@@ -67,13 +73,14 @@ pub use planning::Planning;
 pub use shared::StepsAhead;
 pub use stepping::Stepping;
 
-/// How often a machine had fewer steps than it needs to brake. With anything but zeros here, the main loop is
-/// away for too long, or the memory is too small for the speed of the machine.
+/// How often a machine had fewer steps queued than it needs to brake, since it was made; both counters wrap.
+/// Anything but zeros means that the main loop is blocked for too long, or that the memory is too small for
+/// the speed of the machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Underruns {
     /// Steps that were made more slowly than planned.
     pub slowed_steps: u32,
-    /// How often the machine came to rest where it was not to.
+    /// Unplanned stops.
     pub stops: u32,
 }

@@ -1,4 +1,4 @@
-//! [`NearLines`]: the distance from a place to the nearest of many lines.
+//! [`NearestLineIndex`]: finds the nearest of many lines to a point.
 
 use plotter_vector::PxPoint;
 use rstar::RTree;
@@ -10,26 +10,26 @@ const LONGEST_PX: f64 = 16.0;
 /// Most pieces of one segment, however long it is.
 const MOST_PIECES: f64 = 65_536.0;
 
-/// Polylines with an index of where they run.
+/// Polylines with a grid that finds the nearest of them.
 #[derive(Debug)]
-pub struct NearLines {
+pub struct NearestLineIndex {
     /// Their segments, each with the number of its polyline; of one vertex, from that to itself.
     segments: Vec<(PxPoint, PxPoint, usize)>,
     tree: RTree<GeomWithData<Line<[f64; 2]>, usize>>,
 }
 
-/// A place on a line that stands for a piece of it.
+/// A piece of a line, with its middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinePiece {
-    /// The piece's middle.
+    /// Middle of the piece.
     pub middle: PxPoint,
-    /// The piece's length, px.
+    /// Length of the piece, px.
     pub length_px: f64,
     /// Number of the polyline.
     pub line: usize,
 }
 
-impl NearLines {
+impl NearestLineIndex {
     /// An index of polylines; one vertex is a dot, none is nothing.
     pub fn new<'a>(lines: impl IntoIterator<Item = &'a [PxPoint]>) -> Self {
         let mut segments = Vec::new();
@@ -97,18 +97,18 @@ mod tests {
     #[test]
     fn the_nearest_is_found_on_long_lines_and_dots() {
         let (long, dot) = ([at(0.0, 0.0), at(300.0, 400.0)], [at(100.0, 0.0)]);
-        let lines = NearLines::new([&long[..], &dot[..], &[]]);
+        let lines = NearestLineIndex::new([&long[..], &dot[..], &[]]);
         // (100, 0) lies 80 px from the line: 0.8 · 100.
         assert_eq!(lines.nearest(at(100.0, 3.0)), Some((3.0, 1)));
         let (far, line) = lines.nearest(at(146.0, 203.0)).unwrap();
         assert!((far - 5.0).abs() < 1e-9 && line == 0, "{far}");
-        assert_eq!(NearLines::new([]).nearest(at(0.0, 0.0)), None);
+        assert_eq!(NearestLineIndex::new([]).nearest(at(0.0, 0.0)), None);
     }
 
     #[test]
     fn pieces_are_equal_and_have_the_whole_length() {
         let (line, dot) = ([at(0.0, 0.0), at(3.0, 0.0), at(3.0, 0.7)], [at(9.0, 9.0)]);
-        let pieces: Vec<LinePiece> = NearLines::new([&line[..], &dot[..]]).pieces(0.5).collect();
+        let pieces: Vec<LinePiece> = NearestLineIndex::new([&line[..], &dot[..]]).pieces(0.5).collect();
         assert_eq!(pieces.len(), 6 + 2 + 1);
         assert_eq!(pieces[0], LinePiece { middle: at(0.25, 0.0), length_px: 0.5, line: 0 });
         assert_eq!(pieces[8], LinePiece { middle: at(9.0, 9.0), length_px: 0.0, line: 1 });
