@@ -61,6 +61,11 @@ impl LineBuffer {
         self.text.get(..self.len)
     }
 
+    /// Whether it is one of Grbl's questions, which nothing comes of but an answer.
+    pub(super) fn is_question(&self) -> bool {
+        matches!(self.text(), Some([b'$', b'G' | b'$' | b'#' | b'I' | b'N']))
+    }
+
     pub(super) const fn clear(&mut self) {
         (self.len, self.comment, self.ended) = (0, Comment::None, false);
     }
