@@ -83,9 +83,6 @@ fn a_question_is_answered_at_once_while_the_planner_is_full() {
     }
     let modes = at_once(&mut bench, "$G\n");
     assert!(modes.starts_with("[GC:G1 ") && modes.ends_with("]\r\nok\r\n"), "{modes:?}");
-    for refused in ["$$\n", "$#\n", "$I\n", "$N\n"] {
-        assert_eq!(at_once(&mut bench, refused), "error:8\r\n", "{refused}");
-    }
     // What was answered takes no room: 128 bytes behind the line that waits are there as before.
     assert_eq!(at_once(&mut bench, "G1 X30.000 Y10.0000\n"), "");
     assert!(at_once(&mut bench, "?").contains("|Bf:0,128|"));

@@ -61,9 +61,9 @@ impl LineBuffer {
         self.text.get(..self.len)
     }
 
-    /// Whether it is one of Grbl's questions, which nothing comes of but an answer.
+    /// Whether it is `$G`, of which nothing comes but an answer.
     pub(super) fn is_question(&self) -> bool {
-        matches!(self.text(), Some([b'$', b'G' | b'$' | b'#' | b'I' | b'N']))
+        self.len == 2 && self.text.starts_with(b"$G")
     }
 
     pub(super) const fn clear(&mut self) {

@@ -242,7 +242,7 @@ impl<P: Pens> Grbl<P> {
     }
 
     /// Carries out the complete line and answers it. Says whether there was one, and room for all its
-    /// commands. As in Grbl, a question needs none: it is answered while the planner is full, too.
+    /// commands. As in Grbl, `$G` needs none: it is answered while the planner is full, too.
     fn carry_on(&mut self, status: &Status, link: &mut Link) -> bool {
         if self.wait.is_some()
             || self.is_starting()
