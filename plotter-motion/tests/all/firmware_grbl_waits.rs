@@ -73,6 +73,28 @@ fn all_of_the_receive_buffer_may_be_sent_behind_the_line_that_waits() {
 }
 
 #[test]
+fn a_question_is_answered_at_once_while_the_planner_is_full() {
+    let count = fill(&mut bench());
+    // As many lines as are answered, and none that waits: the next byte begins a line.
+    let mut bench = bench();
+    bench.ask("G90 G21\nM3\nG1 X10 Y10 F60\n");
+    for index in 0..count {
+        assert_eq!(at_once(&mut bench, &format!("G1 X{}.000 Y10.0000\n", 20 + index % 2)), "ok\r\n");
+    }
+    let modes = at_once(&mut bench, "$G\n");
+    assert!(modes.starts_with("[GC:G1 ") && modes.ends_with("]\r\nok\r\n"), "{modes:?}");
+    // What was answered takes no room: 128 bytes behind the line that waits are there as before.
+    assert_eq!(at_once(&mut bench, "G1 X30.000 Y10.0000\n"), "");
+    assert!(at_once(&mut bench, "?").contains("|Bf:0,128|"));
+    // A question behind it has its turn after it, as all lines have.
+    assert_eq!(at_once(&mut bench, "$G\n"), "");
+    bench.run_out();
+    let answers = bench.take_answers();
+    assert!(answers.starts_with("ok\r\n[GC:G1 ") && answers.ends_with("ok\r\n"), "{answers}");
+    assert_eq!(bench.plotter.position(), StepPoint::new(2_627, 876)); // (30, 10) mm
+}
+
+#[test]
 fn a_line_that_finds_no_room_is_answered_in_its_turn_and_not_drawn_in_part() {
     let mut bench = bench();
     fill(&mut bench);

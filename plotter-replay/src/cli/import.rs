@@ -1,7 +1,7 @@
 //! `import`: what another tool recorded, as a log.
 
 use super::commands::{Done, Verdict, cannot, is_free, say, say_first};
-use crate::import::{ImportSettings, Imported, Side, Source, Tool, detect, import};
+use crate::import::{ImportError, ImportSettings, Imported, Side, Source, Tool, detect, import, protocol_of};
 use crate::log::{self, Header};
 use clap::{Args, ValueEnum};
 use std::fs::File;
@@ -42,9 +42,9 @@ pub(crate) struct Import {
     /// Name of the controller in the recording.
     #[arg(long, value_name = "NAME")]
     controller_name: Option<String>,
-    /// Protocol of the line, for the log's header.
-    #[arg(long, value_name = "NAME", default_value = "digits")]
-    protocol: String,
+    /// Protocol of the line, for the log's header [default: found from what is said].
+    #[arg(long, value_name = "NAME")]
+    protocol: Option<String>,
 }
 
 /// As [`Tool`], for the command line.
@@ -105,8 +105,29 @@ fn tool_of(path: &Path) -> Result<Tool, String> {
     })
 }
 
+/// So much of a log tells which protocol it is of, bytes: some ten thousand of the line, where each has a record.
+const LOG_BEGINNING: usize = 1 << 18;
+
+/// The beginning of a log, which nothing is written into behind that.
+#[derive(Default)]
+struct Beginning(Vec<u8>);
+
+impl Write for Beginning {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        if self.0.len() >= LOG_BEGINNING {
+            return Err(std::io::ErrorKind::FileTooLarge.into());
+        }
+        self.0.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
 impl Import {
-    pub(crate) fn run(self, out: &mut impl Write) -> Done {
+    /// The files, each with the tool that wrote it.
+    fn sources(&self) -> Result<Vec<Source<'static>>, String> {
         let none = self.files.iter().map(|path| (path, None));
         let host = self.host.iter().map(|path| (path, Some(Side::Host)));
         let controller = self.controller.iter().map(|path| (path, Some(Side::Controller)));
@@ -126,17 +147,49 @@ impl Import {
             });
             sources.push(Source { name, tool, side, open });
         }
+        Ok(sources)
+    }
+
+    /// Which protocol it is of, by its beginning.
+    fn found_protocol(&self, settings: &ImportSettings) -> Result<&'static str, String> {
+        let mut beginning = Beginning::default();
+        let writer = log::Writer::new(&mut beginning, &Header::new());
+        let mut writer = writer.map_err(|error| error.to_string())?;
+        match import(self.sources()?, settings, &mut writer, drop) {
+            Ok(_) | Err(ImportError::Log(_)) => {}
+            Err(error) => return Err(error.to_string()),
+        }
+        let _ = writer.finish(); // as much as there is room for
+        let (mut host, mut machine) = (Vec::new(), Vec::new());
+        let reader = log::Reader::new(beginning.0.as_slice()).map_err(|error| error.to_string())?;
+        for record in reader.flatten() {
+            match record.event {
+                log::Event::Host(bytes) => host.extend(bytes),
+                log::Event::Controller(bytes) => machine.extend(bytes),
+                _ => {}
+            }
+        }
+        Ok(protocol_of(&host, &machine))
+    }
+
+    pub(crate) fn run(self, out: &mut impl Write) -> Done {
+        let sources = self.sources()?;
         is_free(&self.out, self.force)?;
         let settings = ImportSettings {
             baud: self.baud,
             sample_rate_hz: self.sample_rate,
-            host: self.host_name,
-            controller: self.controller_name,
+            host: self.host_name.clone(),
+            controller: self.controller_name.clone(),
         };
+        let found = match &self.protocol {
+            Some(_) => None,
+            None => Some(self.found_protocol(&settings)?),
+        };
+        let protocol = self.protocol.as_deref().or(found).unwrap_or_default();
         let tool = sources.first().map_or("", |source| source.tool.name());
         let header = Header::new()
             .with_number("baud", u64::from(self.baud))
-            .with_text("protocol", &self.protocol)
+            .with_text("protocol", protocol)
             .with_text("recorded_by", tool);
         let failed = |error: log::WriteError| format!("{}: {error}", self.out.display());
         // Under another name until it is whole: what fails leaves no log, and the old one as it was.
@@ -157,6 +210,15 @@ impl Import {
             say(out, &format!("{name}: {side}"));
         }
         say(out, &format!("{tool}: {host_bytes} bytes of the host, {controller_bytes} of the controller"));
+        match found {
+            Some("unknown") => {
+                say(out, "its protocol is none that is known here: drawn as none (--protocol says it)")
+            }
+            Some(protocol) => {
+                say(out, &format!("protocol: {protocol}, by what is said (--protocol says another)"))
+            }
+            None => {}
+        }
         say(out, &format!("wrote {}", self.out.display()));
         if host_bytes + controller_bytes == 0 {
             say(out, "nothing was found in it");

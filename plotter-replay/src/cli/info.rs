@@ -134,7 +134,10 @@ impl Info {
                     points = points.saturating_add(bytes.len());
                     (1, bytes.len())
                 }
-                Event::Edge { .. } => (2, 1),
+                Event::Edge { .. } => {
+                    points = points.saturating_add(1);
+                    (2, 1)
+                }
                 Event::Drive { .. } => (3, 1),
                 Event::Switch { .. } => (4, 1),
                 Event::Estop(_) => (5, 1),

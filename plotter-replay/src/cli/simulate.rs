@@ -114,8 +114,7 @@ impl Simulate {
             self.serve(simulated, &log, &line, || line.take_news(), &stop, out)
         } else {
             let (end, port) = Port::pseudo_terminal().map_err(|error| error.to_string())?;
-            let hint = matches!(spoken, Spoken::Link { .. } | Spoken::Digits)
-                .then(|| format!("try: {} live --port {} drawing.hpgl", super::program(), port.name()));
+            let hint = self.hint(&machine, port.name());
             tell_where(&machine, port.name(), look.into_iter().chain(hint), out);
             let line = PortLine::new(end).map_err(|error| error.to_string())?;
             let ended = self.serve(simulated, &log, &line, Vec::new, &stop, out);
@@ -127,6 +126,16 @@ impl Simulate {
             say(out, &format!("wrote {}", path.display()));
         }
         ended.map(|()| Verdict::Clean)
+    }
+
+    /// How `live` leads it, where it does.
+    fn hint(&self, machine: &Machine, port: &str) -> Option<String> {
+        let described = match (&self.machine, machine.kind()) {
+            (_, MachineKind::Belt) => return None,
+            (Some(path), _) => format!(" --machine {}", path.display()),
+            (None, _) => String::new(),
+        };
+        Some(format!("try: {} live --port {port}{described} drawing.hpgl", super::program()))
     }
 
     /// The machine on a page, which is there as long as its server.

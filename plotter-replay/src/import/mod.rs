@@ -22,6 +22,7 @@ mod hex_dump;
 mod jpnevulator;
 mod merge;
 mod plotter_raw;
+mod protocol;
 mod raw;
 mod saleae;
 mod sides;
@@ -30,6 +31,7 @@ mod socat;
 
 pub use detect::detect;
 pub use merge::{ImportError, Imported, import};
+pub use protocol::protocol_of;
 
 use core::fmt;
 use std::io::{self, BufRead};

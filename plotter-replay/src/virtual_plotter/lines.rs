@@ -11,7 +11,7 @@
 //!
 //! Where the log has the motors' steps, they are the way, and the lines only say where it should go.
 
-use super::{AnomalyKind, VirtualPlotter};
+use super::{AnomalyKind, Reached, VirtualPlotter};
 use core::time::Duration;
 use plotter_motion::gcode::{Interpreter, PenConvention, ReadOptions, Reader, ServoCommand, Spacing};
 use plotter_motion::{Pen, PlotOp, Point, Segment, StepPoint, toolpath::chords};
@@ -52,6 +52,10 @@ const ON_WAY_MM: f64 = 0.15;
 /// elsewhere.
 const NEAR_WAY_MM: f64 = 2.0;
 
+/// By how many steps the motors lead away from a place that they have passed: a way drawn in whole steps goes to
+/// and fro by one.
+const PASSED_STEPS: f64 = 2.0;
+
 /// A straight move that is not made yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Planned {
@@ -79,6 +83,8 @@ pub(super) struct Lines {
     planned: VecDeque<Planned>,
     /// From when on what is planned was being drawn.
     since: Duration,
+    /// How near the steps have come to the place that is under way, mm.
+    nearest_mm: f64,
     knows_place: bool,
     last_report: Option<Duration>,
     last_answer: Option<Duration>,
@@ -105,6 +111,7 @@ impl Lines {
             is_refused: false,
             planned: VecDeque::new(),
             since: Duration::ZERO,
+            nearest_mm: f64::INFINITY,
             knows_place: start.is_some(),
             last_report: None,
             last_answer: None,
@@ -235,12 +242,19 @@ impl VirtualPlotter {
             lines.has_steps = true;
         }
         self.begin_planned();
-        // What the plan rounds off is passed over with the next place that is met.
-        let counted = self.counted;
-        let Some(lines) = &self.lines else { return };
-        let met = lines.planned.iter().position(|planned| self.settings.to_counts(planned.to) == counted);
-        if met == Some(0) {
+        let (Some(target), Some(lines)) = (self.next, &mut self.lines) else { return };
+        if self.counted == target {
             self.planned_reached();
+            return;
+        }
+        // On a straight way to a place each step is nearer to it: one that leads away has passed it by. So do
+        // corners that are rounded, and the machine's own chords of an arc.
+        let away_mm = self.settings.to_sheet(self.counted).distance(self.settings.to_sheet(target));
+        let step_mm = self.settings.x_mm_per_pulse.max(self.settings.y_mm_per_pulse);
+        if away_mm <= lines.nearest_mm {
+            lines.nearest_mm = away_mm;
+        } else if lines.nearest_mm <= NEAR_WAY_MM && away_mm > lines.nearest_mm + PASSED_STEPS * step_mm {
+            self.planned_passed(target);
         }
     }
 
@@ -435,6 +449,9 @@ impl VirtualPlotter {
         };
         let target = self.settings.to_counts(planned.to);
         self.next = Some(target);
+        if let Some(lines) = &mut self.lines {
+            lines.nearest_mm = f64::INFINITY;
+        }
         self.under_way = 1;
         if !self.pen_recorded {
             self.set_pen(planned.pen);
@@ -457,6 +474,20 @@ impl VirtualPlotter {
             lines.knows_place = true;
         }
         self.target_reached();
+        self.begin_planned();
+    }
+
+    /// The motors have passed the place that is under way without having stood in it.
+    fn planned_passed(&mut self, target: StepPoint) {
+        if let Some(lines) = &mut self.lines {
+            lines.planned.pop_front();
+            lines.knows_place = true;
+        }
+        let (time, actual) = (self.now, self.counted);
+        let error = StepPoint::new(actual.x.saturating_sub(target.x), actual.y.saturating_sub(target.y));
+        (self.next, self.under_way, self.from) = (None, 0, target);
+        self.reached_count = self.reached_count.saturating_add(1);
+        self.end_leg(Some(Reached { time, desired: target, actual, error, resync_error: error }));
         self.begin_planned();
     }
 

@@ -61,6 +61,11 @@ impl LineBuffer {
         self.text.get(..self.len)
     }
 
+    /// Whether it is `$G`, of which nothing comes but an answer.
+    pub(super) fn is_question(&self) -> bool {
+        self.len == 2 && self.text.starts_with(b"$G")
+    }
+
     pub(super) const fn clear(&mut self) {
         (self.len, self.comment, self.ended) = (0, Comment::None, false);
     }

@@ -242,13 +242,13 @@ impl<P: Pens> Grbl<P> {
     }
 
     /// Carries out the complete line and answers it. Says whether there was one, and room for all its
-    /// commands.
+    /// commands. As in Grbl, `$G` needs none: it is answered while the planner is full, too.
     fn carry_on(&mut self, status: &Status, link: &mut Link) -> bool {
         if self.wait.is_some()
             || self.is_starting()
             || self.mode == Mode::Sleep
             || !self.line.has_ended()
-            || link.commands.room() < MOST_COMMANDS
+            || (link.commands.room() < MOST_COMMANDS && !self.line.is_question())
         {
             return false;
         }

@@ -43,16 +43,19 @@ function before(times, time) { // how many of sorted times are not after `time`
   return low;
 }
 const gaps = data.gaps.map(([start, length]) => [start * 1e-6, (start + length) * 1e-6]).sort((a, b) => a[0] - b[0]);
-function curve({ from_us, width_us, unit, low, high }, stands) { // the middle of each stretch, least and greatest
-  const points = [];
-  let gap = 0;
+function curve({ from_us, width_us, unit, low, high }, across) { // the middle of each stretch, least and greatest
+  const points = [], width = width_us * 1e-6;
+  let gap = 0, before = null;
   low.forEach((value, n) => {
     if (value === null) return;
-    const time = (from_us + (n + 0.5) * width_us) * 1e-6, before = points.at(-1);
+    const time = (from_us + (n + 0.5) * width_us) * 1e-6;
     while (gap < gaps.length && gaps[gap][1] <= (before ? before[0] : 0)) gap++;
-    // What stands while the line is silent is drawn as standing, not on its way to where it is next.
-    if (stands && before && gap < gaps.length && gaps[gap][1] < time) points.push([gaps[gap][1], before[1], before[2]]);
-    points.push([time, value * unit, high[n] * unit]);
+    const isAcross = before && gap < gaps.length && gaps[gap][0] > before[0] - width && gaps[gap][1] < time + width;
+    // What stands while the line is silent is drawn as standing, not on its way to where it is next; what
+    // nobody knows then is not drawn.
+    if (isAcross && across === "stands") points.push([Math.min(gaps[gap][1], time), before[1], before[2]]);
+    if (isAcross && across === "unknown") points.push(null);
+    points.push(before = [time, value * unit, high[n] * unit]);
   });
   return points;
 }
@@ -151,7 +154,7 @@ function place(time) { // of the pen: x, y, whether it is down, mm/s
 }
 
 const charts = data.charts.map(({ label, unit, curves }) => {
-  const chart = new Chart($("charts"), label, unit, curves.map(({ role, label, run, data }) => ({ role, label, run, points: curve(data, data_stands && role !== "error" && run !== "bars") })), seek);
+  const chart = new Chart($("charts"), label, unit, curves.map(({ role, label, run, data }) => ({ role, label, run, points: curve(data, run === "bars" ? "" : role === "error" ? "unknown" : data_stands ? "stands" : "") })), seek);
   chart.span = [first, last];
   chart.bands = gaps;
   return chart;
