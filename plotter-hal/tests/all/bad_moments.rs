@@ -251,7 +251,8 @@ proptest! {
         program.run(&mut now, Duration::from_micros(after_us));
         prop_assert!(!program.failed && program.told.is_empty());
         silent.set(true);
-        // A direction is set when it changes, an ENABLE when motors start and stop: until then nobody can know.
+        // A direction is set when it changes, an ENABLE when motors start and stop: until then nobody can
+        // know.
         program.run(&mut now, Duration::from_secs(6));
         let ended = copper.rises();
         if on == Expander::Limits || on == Expander::All {
@@ -297,7 +298,8 @@ proptest! {
         let before = copper.rises();
         prop_assert!(copper.enable.high.get());
 
-        // It knows that it was reset, or its switches have to tell where it stands: then it waits to be homed.
+        // It knows that it was reset, or its switches have to tell where it stands: then it waits to be
+        // homed.
         let (mut program, mut now) = Program::start(&copper, homing, !homing);
         program.run(&mut now, Duration::from_millis(10));
         prop_assert!(program.answers.contains("Grbl 1.1"), "the host hears that it has begun anew");

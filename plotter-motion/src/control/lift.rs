@@ -126,7 +126,8 @@ impl core::error::Error for LiftFault {}
 ///     gate.set_z_limits(switches);
 ///     let is_down = plotter.pen_deg() == plotter.settings().stored.pen_down_deg;
 ///     lift.go(now, if is_down { Pen::Down } else { Pen::Up });
-///     let drive = gate.pass_z(lift.update(now, switches)); // `motor.drive(drive.of_z(Axis::X))` of plotter-hal
+///     // `motor.drive(drive.of_z(Axis::X))` of plotter-hal
+///     let drive = gate.pass_z(lift.update(now, switches));
 ///     height_mm += f64::from(drive.z().value()) * 20.0 * 0.001;
 ///     let drivers = if lift.is_there() { Drivers::Ready } else { Drivers::Busy };
 ///     if plotter.poll(now, drivers).is_some() {

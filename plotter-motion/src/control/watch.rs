@@ -241,8 +241,8 @@ impl Watch {
 
     /// Whether edges come two by two, as where each is counted twice: no shaft turns by jerks like these.
     fn looks_for_pairs(&mut self, since_s: f32) {
-        // A loop that looks for edges tells some two by two as well. One that looks each tenth of a millisecond, as
-        // contouring wants it, makes no gaps of so many seconds.
+        // A loop that looks for edges tells some two by two as well. One that looks each tenth of a
+        // millisecond, as contouring wants it, makes no gaps of so many seconds.
         const LEAST_GAP_S: f32 = 4e-4;
         // A gap to a time within a pair: the marks of a bad encoder are off by a quarter.
         const UNEVEN: f32 = 8.0;

@@ -204,8 +204,8 @@ fn a_tool_that_rises_alone_makes_an_s_curve() {
     let alone = [(PlotOp::Travel { to: Point::ORIGIN }, Some(10.0))];
     let events = rising(jerk, &alone);
     assert_eq!(end(&events), [0, 0, 4000]);
-    // 1000 mm/s² times 0.9 along the path are 18 times z's 50, so its jerk is 1111 mm/s³: 10 mm at 5 mm/s, 0.1 s to
-    // speed up and to brake, and 45 ms of jerk. The last step is made half a step before the end.
+    // 1000 mm/s² times 0.9 along the path are 18 times z's 50, so its jerk is 1111 mm/s³: 10 mm at 5 mm/s,
+    // 0.1 s to speed up and to brake, and 45 ms of jerk. The last step is made half a step before the end.
     let took_s = events.last().unwrap().tick as f64 * 1e-6;
     assert!((took_s - 2.145).abs() < 0.02, "{took_s}");
     let trapezoid_s = rising(PlannerSettings::default(), &alone).last().unwrap().tick as f64 * 1e-6;

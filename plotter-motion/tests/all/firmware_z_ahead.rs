@@ -308,7 +308,8 @@ fn a_tool_that_runs_out_of_steps_is_braked_within_its_limits() {
     for jerk_mm_s3 in [None, Some(50_000.0)] {
         let settings = settings(PlannerSettings { jerk_mm_s3, ..PlannerSettings::default() }, TOOL);
         let alone = in_one(settings, text);
-        // Four thousand words of 16 bits are a second of this tool, and the loop is away for longer now and then.
+        // Four thousand words of 16 bits are a second of this tool, and the loop is away for longer now and
+        // then.
         let mut halves = Halves::new(settings, away_2_000);
         halves.ask(text);
         let Underruns { slowed_steps, stops } = halves.planning.underruns();

@@ -123,8 +123,9 @@ fn every_line_ends(off: f64, lines: u64, limit: Duration) {
             println!(
                 "off by {off}, loaded {is_loaded}, {decoding:?}: {slowest_s:.2} s at most (seed {slow}), {farthest_counts:.2} counts off the target (seed {far}), {beside:?} by 0, 1, 2, 3 and more whole ones"
             );
-            // x4 counts are where the shaft is. Of x1 ones the first is known to a count, since the shafts begin
-            // anywhere, and it has two places (see QuadratureX1); a line that ends farther off has lost one.
+            // x4 counts are where the shaft is. Of x1 ones the first is known to a count, since the shafts
+            // begin anywhere, and it has two places (see QuadratureX1); a line that ends farther off has lost
+            // one.
             let most_lost = match decoding {
                 Decoding::X1 if off > 0.3 => lines / 20 + 2,
                 Decoding::X1 => lines / 40,

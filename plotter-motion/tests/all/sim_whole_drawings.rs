@@ -332,8 +332,8 @@ fn seeds(name: &str, share: f64) -> usize {
     }
 }
 
-/// Whether a row of the table is one of those that `PROFILE_ROWS` asks for, by their beginnings with commas between
-/// them (`worn-gantry; 25 %; learning`); without it all are.
+/// Whether a row of the table is one of those that `PROFILE_ROWS` asks for, by their beginnings with commas
+/// between them (`worn-gantry; 25 %; learning`); without it all are.
 fn is_asked_for(row: &str) -> bool {
     let Ok(rows) = std::env::var("PROFILE_ROWS") else { return true };
     rows.split(',').any(|asked| row.starts_with(asked.trim()))

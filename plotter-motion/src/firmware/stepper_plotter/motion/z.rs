@@ -106,7 +106,8 @@ impl<M: Modes> Motion<M> {
         #[cfg(feature = "step-ahead")]
         {
             let of_z = single(z.accel_mm_s2) * length_mm / by_mm;
-            // In units in which it is planned with the acceleration of all others, of which turning has a part.
+            // In units in which it is planned with the acceleration of all others, of which turning has a
+            // part.
             let in_units = state.per_mm > 1.0;
             let of_all = crate::planner::HELIX_SHARE * single(self.planner.settings().accel_mm_s2);
             self.ahead.rises(if in_units { of_all } else { of_z });

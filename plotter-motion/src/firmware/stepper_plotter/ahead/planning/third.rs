@@ -20,7 +20,8 @@ pub(super) fn makes(pulse: Pulse<'_>, second: Option<SecondMotor>) -> Option<Mak
 }
 
 impl<H: Host, M: Modes> Planning<'_, H, M> {
-    /// Takes the state of both limit switches of the third axis. Or [`Stepping::z_switches`](super::Stepping::z_switches) does.
+    /// Takes the state of both limit switches of the third axis. Or
+    /// [`Stepping::z_switches`](super::Stepping::z_switches) does.
     pub fn z_switches(&mut self, now: Duration, switches: EndSwitches) {
         self.third.z = switches;
         self.tell_third(now);
