@@ -2,7 +2,10 @@
 
 use super::command::MaxErrorCommand;
 use crate::shared::{IN_MACHINE_FILE, at, doubted, fit_picture, read_file, told_ink, told_notes, vectorizer};
-use plotter_motion::{Machine, Point, config::VectorizeConfig};
+use plotter_motion::{
+    Machine, Point,
+    config::{PiecesChoice, VectorizeConfig},
+};
 use plotter_vector::{
     Bitmap, Drawing, FileRows, Gray, PxPoint, Scale, Vectorized,
     ink::Despeckled,
@@ -58,7 +61,7 @@ impl Scan {
         told.extend(straightened.iter().flat_map(|found| found.paper.told()));
         let picture = scan.into_gray().map_err(|error| at(path, &error))?;
         // Straight lines: what is followed is what was measured.
-        let vectorize = VectorizeConfig { arcs: false, curves: false, ..machine.config().vectorize };
+        let vectorize = VectorizeConfig { pieces: PiecesChoice::Lines, ..machine.config().vectorize };
         let settings = vectorizer(&vectorize, scale.mm_per_px())?;
         let (ink, (all_ink, _)) = (settings.ink(&picture), settings.threshold.apply(&picture));
         let (reference, dirt) = (Drawing::default(), Despeckled::default());

@@ -1,11 +1,11 @@
 //! From the table `[vectorize]` of a machine's file to a [`Vectorizer`].
 
-use plotter_motion::config::{StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode};
+use plotter_motion::config::{PiecesChoice, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode};
 use plotter_vector::{
     Mode, Order, Threshold, ThresholdMethod, Vectorizer,
     areas::{AreaStyle, Areas, Hatch, MIN_PITCH_PX},
     order::OrderEffort,
-    stroke::Bounded,
+    stroke::{Bounded, Pieces},
 };
 
 /// The vectorizer, ours, that a machine's file asks for; `mm_per_px` is the size of the picture's pixels on
@@ -13,7 +13,7 @@ use plotter_vector::{
 ///
 /// # Errors
 ///
-/// Hatching closer than the picture's pixels; both arcs and curves.
+/// Hatching closer than the picture's pixels.
 pub fn vectorizer(config: &VectorizeConfig, mm_per_px: f64) -> Result<Vectorizer, String> {
     let method = match config.threshold {
         ThresholdChoice::Adaptive => ThresholdMethod::Adaptive,
@@ -31,9 +31,11 @@ pub fn vectorizer(config: &VectorizeConfig, mm_per_px: f64) -> Result<Vectorizer
         StrokeOrder::Fast => OrderEffort::Fast,
         _ => OrderEffort::Best,
     };
-    if config.arcs && config.curves {
-        return Err("arcs and curves: strokes have one of them; leave one out".into());
-    }
+    let pieces = match config.pieces {
+        PiecesChoice::Arcs => Pieces::Arcs,
+        PiecesChoice::Cubics => Pieces::Cubics,
+        _ => Pieces::Lines,
+    };
     let usual = Vectorizer::default();
     let mut areas = usual.areas;
     if config.pen_mm > 0.0 {
@@ -54,8 +56,7 @@ pub fn vectorizer(config: &VectorizeConfig, mm_per_px: f64) -> Result<Vectorizer
         mode,
         threshold: Threshold { method, ..usual.threshold },
         ours: Bounded { tolerance_px: config.max_error_px },
-        arcs: config.arcs,
-        curves: config.curves,
+        pieces,
         max_line_px: (config.max_line_px > 0).then_some(config.max_line_px),
         order: Order { effort, ..usual.order },
         areas,

@@ -52,7 +52,7 @@ pub struct TraceCommand {
     pub(super) max_error_px: Option<f64>,
     /// Circular arcs and circles where they save vertices, within the same error (ours only): CI and AA, G2
     /// and G3, A
-    #[arg(long)]
+    #[arg(long, conflicts_with = "curves")]
     pub(super) arcs: bool,
     /// Cubic curves instead of arcs where they save vertices, within the same error (ours only): C in SVG,
     /// chords in HPGL and G-code

@@ -4,7 +4,7 @@ use super::command::{Choice, ModeChoice, OrderChoice, PreferChoice, RulingChoice
 use crate::shared::{PictureSize, at, read_file, vectorizer};
 use plotter_motion::{
     Machine,
-    config::{PensChoice, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode},
+    config::{PensChoice, PiecesChoice, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode},
 };
 use plotter_vector::{
     Algorithm, Palette, Prefer, ThresholdMethod, Vectorizer,
@@ -123,9 +123,10 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Unscaled, String> {
         }
         given => config.max_error_px = given.unwrap_or(config.max_error_px),
     }
-    // An option wins over the file, which may ask for the other.
-    if arguments.arcs || arguments.curves {
-        (config.arcs, config.curves) = (arguments.arcs, arguments.curves);
+    if arguments.arcs {
+        config.pieces = PiecesChoice::Arcs;
+    } else if arguments.curves {
+        config.pieces = PiecesChoice::Cubics;
     }
     match arguments.hatch {
         Some(bad) if !(bad >= 0.0 && bad.is_finite()) => {
@@ -169,10 +170,6 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Unscaled, String> {
                 plotter_vector::areas::MAX_LINE_PX
             )
         })?;
-    }
-    // The file's own, for options exclude each other.
-    if let (Some(path), true) = (&arguments.config, config.arcs && config.curves && !arguments.arcs) {
-        return Err(at(path, &"[vectorize] arcs and curves: strokes have one of them; leave one out"));
     }
     let pens = pens(arguments, config.pens)?;
     let prefer = match arguments.prefer {

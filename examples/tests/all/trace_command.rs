@@ -2,6 +2,7 @@
 
 use crate::built_example;
 use crate::real_files::other;
+use plotter_vector::stroke::Pieces;
 
 use built_example::{Folder, complaint, data, run_example, run_with_input};
 
@@ -50,7 +51,7 @@ fn arcs_reach_every_file() {
     let level = |x: f64, y: f64| u8::from(((x - 60.0).hypot(y - 60.0) - 40.0).abs() > 1.5) * 255;
     let ring = (0..14_400_u32).map(|at| level(f64::from(at % 120) + 0.5, f64::from(at / 120) + 0.5));
     std::fs::write(&picture, [b"P5 120 120 255\n".to_vec(), ring.collect()].concat()).unwrap();
-    std::fs::write(&config, "schema = 1\n[vectorize]\narcs = true\n").unwrap();
+    std::fs::write(&config, "schema = 1\n[vectorize]\npieces = \"arcs\"\n").unwrap();
     for option in [&["--arcs"][..], &["--config", &config]] {
         let (svg, plt, gcode, points, look) =
             (file("a.svg"), file("a.plt"), file("a.gcode"), file("a.txt"), file("a.png"));
@@ -89,7 +90,7 @@ fn curves_reach_every_file() {
     };
     let wave = (0..24_000_u32).map(|at| level(f64::from(at % 200) + 0.5, f64::from(at / 200) + 0.5));
     std::fs::write(&picture, [b"P5 200 120 255\n".to_vec(), wave.collect()].concat()).unwrap();
-    std::fs::write(&config, "schema = 1\n[vectorize]\ncurves = true\n").unwrap();
+    std::fs::write(&config, "schema = 1\n[vectorize]\npieces = \"cubics\"\n").unwrap();
     for option in [&["--curves"][..], &["--config", &config]] {
         let (svg, plt, gcode, points, look) =
             (file("a.svg"), file("a.plt"), file("a.gcode"), file("a.txt"), file("a.png"));
@@ -105,12 +106,12 @@ fn curves_reach_every_file() {
         assert!(read(&gcode).matches("\nG1 ").count() > 10 * curves && !read(&gcode).contains("G2 "));
     }
     assert!(complaint("trace", &["--algorithm", "published", "--curves"]).contains("draws straight lines"));
-    let both = "arcs and curves: strokes have one of them; leave one out";
+    let both = "'--arcs' cannot be used with '--curves'";
     assert!(complaint("trace", &[&picture, "--arcs", "--curves"]).contains(both));
-    std::fs::write(&config, "schema = 1\n[vectorize]\narcs = true\ncurves = true\n").unwrap();
+    std::fs::write(&config, "schema = 1\n[vectorize]\narcs = true\n").unwrap();
     assert!(
         complaint("trace", &[&picture, "--config", &config])
-            .contains(&format!("{config}: [vectorize] {both}"))
+            .contains("unknown key `vectorize.arcs`; write `pieces = \"arcs\"` for `arcs = true`")
     );
 }
 
@@ -610,18 +611,15 @@ fn by_rows_and_whole_are_the_same_bytes() {
     };
     for picture in [&names[0], &names[1], &inverted(&names[1])] {
         let whole = plotter_vector::decode(&std::fs::read(picture).unwrap()).unwrap();
-        for arcs in [false, true] {
-            let vectorizer = plotter_vector::Vectorizer { arcs, ..Default::default() };
+        for (pieces, option) in [(Pieces::Lines, &[][..]), (Pieces::Arcs, &["--arcs"])] {
+            let vectorizer = plotter_vector::Vectorizer { pieces, ..Default::default() };
             let whole = vectorizer.vectorize(&whole).unwrap();
             let mut expected = String::new();
             let palette = plotter_vector::Palette::default();
             plotter_vector::write::svg_in_colour(&whole.drawing, &palette, Some(0.1), 1.0, &mut expected)
                 .unwrap();
             let svg = folder.file("a.svg");
-            let report = folder.trace_report(
-                picture,
-                &[&["--svg", svg.as_str()][..], if arcs { &["--arcs"] } else { &[] }].concat(),
-            );
+            let report = folder.trace_report(picture, &[&["--svg", svg.as_str()][..], option].concat());
             assert_eq!(std::fs::read_to_string(&svg).unwrap(), expected, "{picture}");
             assert_eq!(report["mean_px"].as_f64(), Some(whole.error.mean_px), "{picture}");
         }

@@ -48,4 +48,4 @@ pub use third_motor::{SecondMotorChoice, SecondMotorConfig, ZConfig};
 #[cfg(feature = "toml")]
 pub use toml_error::{TomlError, TomlPlace};
 pub use transmission::TransmissionConfig;
-pub use vectorize::{PensChoice, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode};
+pub use vectorize::{PensChoice, PiecesChoice, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode};

@@ -113,7 +113,7 @@ const SIGN_OF_GAIN: &str = "for a motor that runs away swap its wires, not the s
 const DUTY_OF_255: &str = "duty counts in steps of 255, as the published gains do";
 
 /// Keys that the machine has once.
-static MACHINE: [Rule; 71] = [
+static MACHINE: [Rule; 70] = [
     Rule { key: "schema", form: Form::Whole(SCHEMA) },
     Rule { key: "name", form: Form::Text(super::MachineName::MAX_BYTES) },
     Rule { key: "drive", form: Form::Choice(&["dc", "stepper"]) },
@@ -457,8 +457,7 @@ static MACHINE: [Rule; 71] = [
         "px",
         "0.5 is half a pixel",
     ),
-    Rule { key: "vectorize.arcs", form: Form::Switch },
-    Rule { key: "vectorize.curves", form: Form::Switch },
+    Rule { key: "vectorize.pieces", form: Form::Choice(&["lines", "arcs", "cubics"]) },
     Rule { key: "vectorize.threshold", form: Form::ChoiceOrLevel(&["auto", "otsu", "adaptive"]) },
     Rule { key: "vectorize.pens", form: Form::CountOrToml(PENS) },
     Rule { key: "vectorize.order", form: Form::Choice(&["none", "fast", "best"]) },

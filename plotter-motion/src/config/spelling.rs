@@ -95,9 +95,18 @@ const CONVERSIONS: [(&str, &str, f64, f64); 32] = [
     ("Hz", "kHz", 1.0, 1_000.0),
 ];
 
+/// Keys of older files by table, and what says the same today.
+const RENAMED: [(&str, &str, &str); 2] = [
+    ("vectorize", "arcs", "`pieces = \"arcs\"` for `arcs = true`, and nothing for `arcs = false`"),
+    ("vectorize", "curves", "`pieces = \"cubics\"` for `curves = true`, and nothing for `curves = false`"),
+];
+
 /// What the writer of the unknown key `word` in the table `table` (empty: the top) may have meant; `value` is
 /// the number behind it, if it is one.
 pub(super) fn remedy(table: &str, word: &str, value: Option<f64>) -> String {
+    if let Some((_, _, now)) = RENAMED.iter().find(|(of, old, _)| (*of, *old) == (table, word)) {
+        return format!("write {now}");
+    }
     let known = keys_of(table);
     if let Some(text) = another_unit(word, value, &known) {
         return text;

@@ -16,10 +16,8 @@ pub struct VectorizeConfig {
     pub mode: VectorizeMode,
     /// Greatest distance of the ink from the strokes, px of the picture.
     pub max_error_px: f64,
-    /// Whether curves become circular arcs and circles where that saves vertices.
-    pub arcs: bool,
-    /// Whether curves become cubic curves where that saves vertices; not with arcs.
-    pub curves: bool,
+    /// What strokes are made of.
+    pub pieces: PiecesChoice,
     /// How ink is told from paper.
     pub threshold: ThresholdChoice,
     /// Which pens are told apart by their colours.
@@ -44,8 +42,7 @@ impl Default for VectorizeConfig {
         Self {
             mode: VectorizeMode::Centreline,
             max_error_px: 0.5,
-            arcs: false,
-            curves: false,
+            pieces: PiecesChoice::Lines,
             threshold: ThresholdChoice::Auto,
             pens: PensChoice::Count(1),
             order: StrokeOrder::Best,
@@ -70,6 +67,20 @@ pub enum VectorizeMode {
     Outline,
     /// The middle of lines, and areas in their own style.
     Mixed,
+}
+
+/// What strokes are made of, where more than straight lines saves vertices.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
+pub enum PiecesChoice {
+    /// Straight lines.
+    #[default]
+    Lines,
+    /// Straight lines, circular arcs and circles.
+    Arcs,
+    /// Straight lines and cubic curves.
+    Cubics,
 }
 
 /// Which pens are told apart by their colours. In a file a number, `"auto"`, or the path of a palette's TOML

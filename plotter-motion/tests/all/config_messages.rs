@@ -39,6 +39,11 @@ fn a_slip_of_the_pen_is_understood() {
 }
 
 #[test]
+fn a_key_of_an_older_file_is_told_what_it_is_called_today() {
+    assert_snapshot!(message("[vectorize]\ncurves = true"), @r#"line 3, column 1: unknown key `vectorize.curves`; write `pieces = "cubics"` for `curves = true`, and nothing for `curves = false`"#);
+}
+
+#[test]
 fn a_wrong_unit_is_converted() {
     assert_snapshot!(message("[control.contouring]\nfeed_mm_min = 3600"), @"line 3, column 1: unknown key `control.contouring.feed_mm_min`; the unit here is mm/s: write `feed_mm_s = 60`");
     assert_snapshot!(message("x.motor.inertia_g_cm2 = 5.7"), @"line 2, column 9: unknown key `x.motor.inertia_g_cm2`; the unit here is kg m^2: write `inertia_kg_m2 = 0.00000057`");

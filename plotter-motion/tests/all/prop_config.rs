@@ -22,7 +22,7 @@ loop_hz = 2_500
 slope_counts = 1e1
 [vectorize]
 mode = "mixed"
-arcs = true
+pieces = "arcs"
 threshold = "128"
 pens = 3
 [planner]

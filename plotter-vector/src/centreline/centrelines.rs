@@ -8,7 +8,7 @@ pub(crate) use crate::centreline::graph::CONTEXT_ROWS;
 use crate::centreline::graph::{Cuts, Fragment, Joiner, Rims, Scan, Stretch, Stroke, fragments};
 use crate::ink::hairlines::Hairlines;
 use crate::parallel::{each, threads};
-use crate::stroke::simplify::SegmentKinds;
+use crate::stroke::Pieces;
 use crate::{
     picture::{Bitmap, Gray},
     raster::{Thinning, ThinningMethod},
@@ -24,7 +24,7 @@ pub(crate) struct Centring {
     /// What the strokes are simplified with.
     pub(crate) bounded: Bounded,
     /// What they are made of.
-    pub(crate) segment_kinds: SegmentKinds,
+    pub(crate) pieces: Pieces,
     /// Whether small marks are drawn again as a whole.
     pub(crate) redraw: bool,
     /// What thin lines are.
@@ -40,7 +40,7 @@ impl Centring {
         Self {
             thinning,
             bounded,
-            segment_kinds: SegmentKinds::Lines,
+            pieces: Pieces::Lines,
             redraw: false,
             hairlines: Hairlines::Raster,
             band_rows: band_rows.max(1),
@@ -54,15 +54,15 @@ impl Centring {
 
     /// Where long strokes are cut: with arcs and curves nowhere, for these may go on over any cut.
     pub(crate) fn cuts(&self) -> Cuts {
-        match self.segment_kinds {
-            SegmentKinds::Lines => Cuts::default(),
-            SegmentKinds::Arcs | SegmentKinds::Curves => Cuts { least: usize::MAX, ..Cuts::default() },
+        match self.pieces {
+            Pieces::Lines => Cuts::default(),
+            Pieces::Arcs | Pieces::Cubics => Cuts { least: usize::MAX, ..Cuts::default() },
         }
     }
 
     /// What is made of small marks' lines before they are drawn again; with arcs and curves they are not.
     pub(crate) fn marks(&self) -> Option<Bounded> {
-        (self.redraw && self.segment_kinds == SegmentKinds::Lines).then_some(self.bounded)
+        (self.redraw && self.pieces == Pieces::Lines).then_some(self.bounded)
     }
 
     /// The strokes of a picture in memory, in reading order of where they begin; `grey`, with whether dark is
@@ -114,7 +114,7 @@ impl Centring {
     /// Strokes simplified.
     pub(crate) fn simplified(&self, mut whole: Vec<Stroke>) -> Vec<Curve> {
         whole.retain(|whole| !whole.is_empty());
-        let mut strokes = each(whole, |whole| whole.curve(self.cuts(), self.bounded, self.segment_kinds));
+        let mut strokes = each(whole, |whole| whole.curve(self.cuts(), self.bounded, self.pieces));
         strokes.retain(|stroke| !stroke.vertices.is_empty());
         strokes.iter_mut().for_each(|stroke| stroke.vertices.shrink_to_fit());
         strokes

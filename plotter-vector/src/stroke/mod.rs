@@ -16,4 +16,4 @@ pub use cubic::Cubic;
 pub use curve::{Arc, Curve};
 pub use drawing::{Drawing, Scale, ScaleError};
 pub use pre_elimination::PreElimination;
-pub use simplify::{Bounded, DynamicThreshold, MAX_REACH_PX, Simplify};
+pub use simplify::{Bounded, DynamicThreshold, MAX_REACH_PX, Pieces, Simplify};

@@ -13,7 +13,7 @@
 use crate::ink::speckle::fill_holes;
 use crate::picture::runs::ink_runs;
 use crate::report::coverage::{Index, JUMP_PX};
-use crate::stroke::simplify::SegmentKinds;
+use crate::stroke::Pieces;
 use crate::{
     areas::inset_outlines,
     picture::{Bitmap, Pixel},
@@ -75,7 +75,7 @@ pub(crate) struct BareInk<'a> {
     pub(crate) drawn: &'a Index,
     /// How far from what they cover ink is covered enough, px.
     pub(crate) within_px: f64,
-    pub(crate) segment_kinds: SegmentKinds,
+    pub(crate) pieces: Pieces,
     /// Whether spots get strokes, too.
     pub(crate) spots: bool,
 }
@@ -341,7 +341,7 @@ impl BareInk<'_> {
 
     fn draw(&self, sites: &[PxPoint], closed: bool, strokes: &mut Vec<Curve>) {
         let bounded = Bounded { tolerance_px: LEFT_SHARE * self.within_px };
-        let stroke = bounded.stroke(sites, closed, self.segment_kinds);
+        let stroke = bounded.stroke(sites, closed, self.pieces);
         if !stroke.vertices.is_empty() {
             strokes.push(stroke);
         }

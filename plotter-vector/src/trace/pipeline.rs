@@ -12,9 +12,9 @@ use crate::raster::raster_corner::{put_back, take_out};
 use crate::raster::straight_on::{GoneOn, straight_on};
 use crate::report::coverage::{AreaPen, Beyond, Index, add_coverage, beyond_hairlines, with_widths};
 use crate::report::covered_figures::Covered;
+use crate::stroke::Pieces;
 use crate::stroke::clip_to_picture::within;
 use crate::stroke::join_gaps::{join_gaps, without_short};
-use crate::stroke::simplify::SegmentKinds;
 use crate::trace::bare_ink::BareInk;
 use crate::{
     areas::{AreaPath, AreaStyle, Areas},
@@ -98,12 +98,8 @@ pub struct Vectorizer {
     /// 32 px wide and high (lettering) are then drawn again as a whole, their vertices where a pen leaves the
     /// ink that is there.
     pub ours: Bounded,
-    /// Ours: whether curves become circular arcs and circles where that saves vertices, with the same
-    /// promise.
-    pub arcs: bool,
-    /// Ours: whether curves become cubic curves where that saves vertices, with the same promise; not with
-    /// arcs.
-    pub curves: bool,
+    /// Ours: what strokes are made of, with the same promise.
+    pub pieces: Pieces,
     /// What ours draws.
     pub mode: Mode,
     /// Ours: whether ink that one stroke a line leaves bare is worth more strokes.
@@ -140,8 +136,7 @@ impl Default for Vectorizer {
             tracking: OrderedTracking::default(),
             published: DynamicThreshold::default(),
             ours: Bounded::default(),
-            arcs: false,
-            curves: false,
+            pieces: Pieces::default(),
             mode: Mode::default(),
             prefer: Prefer::default(),
             smallest_mark_px: None,
@@ -345,7 +340,7 @@ impl Vectorizer {
     /// What strokes leave bare.
     pub(crate) fn bare_ink<'a>(&self, drawn: &'a Index) -> BareInk<'a> {
         let spots = self.prefer == Prefer::Ink;
-        BareInk { drawn, within_px: self.ours.tolerance_px, segment_kinds: self.segment_kinds(), spots }
+        BareInk { drawn, within_px: self.ours.tolerance_px, pieces: self.pieces, spots }
     }
 
     /// The errors of a drawing: what is known of lines one pixel wide from their figures, or measured.
@@ -450,9 +445,6 @@ impl Vectorizer {
         if !(tolerance_px > 0.0 && tolerance_px.is_finite()) {
             return Err(VectorizeError::Tolerance { tolerance_px });
         }
-        if self.arcs && self.curves {
-            return Err(VectorizeError::ArcsAndCurves);
-        }
         self.areas.paths(&Bitmap::empty()).map(drop).map_err(VectorizeError::Areas)
     }
 
@@ -488,18 +480,7 @@ impl Vectorizer {
         let bounded = Bounded { tolerance_px: 0.85 * self.ours.tolerance_px };
         // What is left of an area's rim may be as wide again.
         let centring = Centring::new(self.thinning, max_line_px, bounded, self.band_rows);
-        Centring { segment_kinds: self.segment_kinds(), ..centring }
-    }
-
-    /// What strokes are made of.
-    fn segment_kinds(&self) -> SegmentKinds {
-        if self.arcs {
-            SegmentKinds::Arcs
-        } else if self.curves {
-            SegmentKinds::Curves
-        } else {
-            SegmentKinds::Lines
-        }
+        Centring { pieces: self.pieces, ..centring }
     }
 
     /// The strokes of the areas in some rows, of which the first is row `first_row` of the picture.
@@ -516,7 +497,7 @@ impl Vectorizer {
 
     /// A stroke through sites, by ours.
     fn simplified(&self, sites: &[PxPoint], closed: bool) -> Curve {
-        self.ours.stroke(sites, closed, self.segment_kinds())
+        self.ours.stroke(sites, closed, self.pieces)
     }
 
     /// Ours for lines one pixel wide.
@@ -536,10 +517,10 @@ impl Vectorizer {
         drop(linked);
         let lent = |index: usize| borrowed.get(index).copied().unwrap_or_default();
         // Arcs and curves do not pass where the straight segments do.
-        let covered_px = (self.segment_kinds() == SegmentKinds::Lines).then_some(self.ours.tolerance_px);
+        let covered_px = (self.pieces == Pieces::Lines).then_some(self.ours.tolerance_px);
         let (straight, errors) = simplify(ink, &figures, lent, &shared, &self.ours, covered_px);
-        let drawing = match self.segment_kinds() {
-            SegmentKinds::Lines => straight,
+        let drawing = match self.pieces {
+            Pieces::Lines => straight,
             _ => self.bent(&figures, &straight),
         };
         Ok((drawing, errors))
@@ -552,7 +533,7 @@ impl Vectorizer {
         for (figure, stroke) in figures.iter().zip(straight.strokes()) {
             let sites: Vec<PxPoint> = figure.iter().map(|pixel| PxPoint::from(*pixel)).collect();
             let closed = sites.len() > 3 && sites.first() == sites.last();
-            let curve = self.ours.stroke(&sites, closed, self.segment_kinds());
+            let curve = self.ours.stroke(&sites, closed, self.pieces);
             let curve = within(curve, straight.width_px(), straight.height_px());
             let pays = !curve.is_straight() && curve.vertices.len() < stroke.len();
             drawing.push_curve(1, if pays { curve } else { stroke.to_vec().into() });
@@ -640,15 +621,6 @@ mod tests {
             );
             assert!(with(Algorithm::Published, bad).trace(&dot).is_ok());
         }
-    }
-
-    #[test]
-    fn arcs_and_curves_exclude_each_other() {
-        let both = Vectorizer { arcs: true, curves: true, ..Vectorizer::default() };
-        assert_eq!(
-            both.trace(&Bitmap::empty()).unwrap_err().to_string(),
-            "arcs and curves: a stroke has one of them; leave one out"
-        );
     }
 
     #[test]

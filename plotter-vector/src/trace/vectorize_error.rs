@@ -22,8 +22,6 @@ pub enum VectorizeError {
     },
     /// The picture is noise.
     TooManyFigures(TooManyFigures),
-    /// Both arcs and cubic curves are asked for.
-    ArcsAndCurves,
     /// The style of the areas cannot be drawn.
     Areas(AreaError),
     /// There are no such pens.
@@ -44,7 +42,6 @@ impl fmt::Display for VectorizeError {
                  hand, scan with fewer dots per inch, or cut the picture into sheets"
             ),
             Self::TooManyFigures(error) => error.fmt(f),
-            Self::ArcsAndCurves => f.write_str("arcs and curves: a stroke has one of them; leave one out"),
             Self::Areas(error) => error.fmt(f),
             Self::Pens(error) => error.fmt(f),
             Self::Cancelled(error) => error.fmt(f),

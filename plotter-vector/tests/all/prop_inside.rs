@@ -5,9 +5,12 @@ use plotter_vector::{
     areas::{AreaStyle, Areas, Hatch},
     ink::Pens,
     picture::GrayRows,
-    stroke::Bounded,
+    stroke::{Bounded, Pieces},
 };
 use proptest::prelude::*;
+
+/// All that strokes may be made of.
+const PIECES: [Pieces; 3] = [Pieces::Lines, Pieces::Arcs, Pieces::Cubics];
 
 /// What arcs and cubic curves may bulge over the border, px: a rounding.
 const ROUNDING_PX: f64 = 1e-6;
@@ -59,10 +62,9 @@ fn vectorizers() -> impl Strategy<Value = Vectorizer> {
         hatched,
         Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() },
     ]);
-    (mode, 0_u8..3, prop::sample::select(vec![0.1, 0.5, 2.0])).prop_map(
+    (mode, prop::sample::select(PIECES.to_vec()), prop::sample::select(vec![0.1, 0.5, 2.0])).prop_map(
         |(vectorizer, pieces, tolerance_px)| Vectorizer {
-            arcs: pieces == 1,
-            curves: pieces == 2,
+            pieces,
             ours: Bounded { tolerance_px },
             ..vectorizer
         },

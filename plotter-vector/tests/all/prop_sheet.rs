@@ -11,11 +11,13 @@ use plotter_vector::{
     ink::Polarity,
     picture::{BitmapRows, Depth, GrayRows, RowSource},
     report::{coverage, worst_pixel},
-    stroke::Bounded,
+    stroke::{Bounded, Pieces},
 };
 use proptest::prelude::*;
 
 const BANDS: [u32; 4] = [16, 64, 200, u32::MAX];
+/// All that strokes may be made of.
+const PIECES: [Pieces; 3] = [Pieces::Arcs, Pieces::Cubics, Pieces::Lines];
 
 /// A stroke of a pen: from, to, px.
 type Line = ((i32, i32), (i32, i32));
@@ -114,13 +116,13 @@ proptest! {
     #![proptest_config(few())]
 
     #[test]
-    fn bands_do_not_show(pen_px in 2.0..6.0_f64, lines in lines(200, 900, 10), mode in 0..3_usize, hatched: bool, pieces in 0..3_usize) {
+    fn bands_do_not_show(pen_px in 2.0..6.0_f64, lines in lines(200, 900, 10), mode in 0..3_usize, hatched: bool, pieces in prop::sample::select(PIECES.to_vec())) {
         let gray = drawn(200, 900, pen_px, &lines);
         let ink = ink_of(&gray);
         let mode = [Mode::Centreline, Mode::Outline, Mode::Mixed][mode];
         let style = if hatched { AreaStyle::OutlineAndHatch(Hatch::default()) } else { AreaStyle::Outline };
         let areas = Areas { style, pen_px: 2.0 };
-        let whole = Vectorizer { mode, areas, arcs: pieces == 1, curves: pieces == 2, band_rows: u32::MAX, ..Vectorizer::default() };
+        let whole = Vectorizer { mode, areas, pieces, band_rows: u32::MAX, ..Vectorizer::default() };
         let expected = whole.trace(&ink).unwrap().drawing;
         let expected_grey = whole.vectorize(&gray).unwrap();
         for band_rows in BANDS {
@@ -169,7 +171,9 @@ proptest! {
                 }
             }
         }
-        let whole = Vectorizer { band_rows: u32::MAX, ours: Bounded { tolerance_px: 0.7 }, arcs: seed % 3 == 0, curves: seed % 3 == 1, ..Vectorizer::default() };
+        let pieces = PIECES[(seed % 3) as usize];
+        let ours = Bounded { tolerance_px: 0.7 };
+        let whole = Vectorizer { band_rows: u32::MAX, ours, pieces, ..Vectorizer::default() };
         let expected = whole.trace(&ink).unwrap().drawing;
         for band_rows in BANDS {
             let vectorizer = Vectorizer { band_rows, ..whole };
@@ -183,7 +187,7 @@ proptest! {
         lines in lines(200, 700, 8),
         dirt in prop::collection::vec((0..200_u32, 0..700_u32), 0..40),
         mode in 0..3_usize,
-        arcs: bool,
+        pieces in prop::sample::select(PIECES.to_vec()),
     ) {
         let mut gray = drawn(200, 700, pen_px, &lines);
         let mut levels = gray.pixels().to_vec();
@@ -191,7 +195,7 @@ proptest! {
         gray = Gray::new(200, 700, levels).unwrap();
         let mode = [Mode::Centreline, Mode::Outline, Mode::Mixed][mode];
         for band_rows in BANDS {
-            let vectorizer = Vectorizer { mode, arcs, band_rows, ..Vectorizer::default() };
+            let vectorizer = Vectorizer { mode, pieces, band_rows, ..Vectorizer::default() };
             assert_as_whole(vectorizer, &gray, &mut GrayRows::new(gray.clone()));
         }
     }
@@ -203,7 +207,7 @@ proptest! {
         holes in prop::collection::vec((0..200_u32, 0..500_u32), 0..40),
         polarity in 0..3_usize,
         method in 0..5_usize,
-        arcs: bool,
+        pieces in prop::sample::select(PIECES.to_vec()),
     ) {
         let mut black = ink_of(&drawn(200, 500, pen_px, &lines));
         holes.iter().for_each(|(x, y)| black.set(Pixel::new(*x, *y), (x + y) % 2 == 0));
@@ -211,7 +215,7 @@ proptest! {
         let level = ThresholdMethod::Level;
         let method = [ThresholdMethod::Otsu, ThresholdMethod::Adaptive, level(0), level(128), level(255)][method];
         let threshold = Threshold { polarity, method, ..Threshold::default() };
-        let vectorizer = Vectorizer { threshold, arcs, band_rows: 64, ..Vectorizer::default() };
+        let vectorizer = Vectorizer { threshold, pieces, band_rows: 64, ..Vectorizer::default() };
         for black in [inverted(&black), black] {
             assert_as_whole(vectorizer, &levels_of(&black), &mut BitmapRows::new(&black));
         }

@@ -4,7 +4,7 @@ use super::Place;
 use super::site::{EXACT_PX, THIN_PX};
 use super::smooth::smooth;
 use super::straight::Straightened;
-use crate::stroke::simplify::SegmentKinds;
+use crate::stroke::Pieces;
 use crate::stroke::{Bounded, Curve, PxPoint, PxVec};
 
 /// How exact the places of a line are that is thin and has grey rims, px.
@@ -182,10 +182,10 @@ fn turn_to_first(places: &mut [Place]) {
 impl Centreline {
     /// The line with few vertices, its first one again at the end of a closed one, of the pieces that it may have.
     /// Corners are vertices.
-    pub(crate) fn curve(&self, bounded: Bounded, segment_kinds: SegmentKinds) -> Curve {
-        let simplified = |part: &[PxPoint], closed: bool| bounded.stroke(part, closed, segment_kinds);
+    pub(crate) fn curve(&self, bounded: Bounded, pieces: Pieces) -> Curve {
+        let simplified = |part: &[PxPoint], closed: bool| bounded.stroke(part, closed, pieces);
         let Some((first, rest)) = self.corners.split_first() else {
-            if self.tips.contains(&true) && !self.closed && segment_kinds == SegmentKinds::Lines {
+            if self.tips.contains(&true) && !self.closed && pieces == Pieces::Lines {
                 return bounded.loose(&self.places, self.tips).into();
             }
             return simplified(&self.places, self.closed);

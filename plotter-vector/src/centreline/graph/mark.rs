@@ -14,7 +14,7 @@ use crate::centreline::fit::Canvas;
 use crate::disjoint_sets::DisjointSets;
 use crate::parallel::each;
 use crate::raster::continuity::neighbours;
-use crate::stroke::simplify::SegmentKinds;
+use crate::stroke::Pieces;
 use crate::{
     picture::{Bitmap, Gray, Pixel},
     stroke::{Bounded, PxPoint},
@@ -249,9 +249,8 @@ impl Picture {
             return None;
         }
         let lines = strokes.into_iter().filter(|stroke| !stroke.is_empty());
-        let lines: Vec<Vec<PxPoint>> = lines
-            .map(|stroke| stroke.curve(Cuts::default(), bounded, SegmentKinds::Lines).vertices)
-            .collect();
+        let lines: Vec<Vec<PxPoint>> =
+            lines.map(|stroke| stroke.curve(Cuts::default(), bounded, Pieces::Lines).vertices).collect();
         let canvas = Canvas::of(&self.ink);
         let redrawn = Redrawn::of(&canvas, lines, width_px)?;
         Some(redrawn.strokes.iter().map(|stroke| self.fragment(stroke, 2.0 * redrawn.half_px)).collect())

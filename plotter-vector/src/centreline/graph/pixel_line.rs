@@ -88,7 +88,7 @@ fn heading(graph: &Graph, end: End) -> Option<PxVec> {
 mod tests {
     use super::*;
     use crate::centreline::graph::Joiner;
-    use crate::stroke::simplify::SegmentKinds;
+    use crate::stroke::Pieces;
     use crate::{
         picture::Bitmap,
         stroke::{Bounded, PxPoint},
@@ -114,7 +114,7 @@ mod tests {
         let places = |at: &PxPoint| (at.x - 0.5, at.y - 0.5);
         let mut strokes: Vec<Vec<_>> = whole
             .into_iter()
-            .map(|stroke| stroke.curve(Default::default(), exact, SegmentKinds::Lines))
+            .map(|stroke| stroke.curve(Default::default(), exact, Pieces::Lines))
             .map(|curve| curve.vertices.iter().map(places).collect())
             .collect();
         strokes.sort_by(|a, b| a.partial_cmp(b).unwrap());

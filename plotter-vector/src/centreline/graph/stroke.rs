@@ -13,7 +13,7 @@ use super::Place;
 use super::centreline::{Centreline, Whole, fill_gaps, keeps_pixels, most_smoothed_px, width_px};
 use super::smooth::smooth;
 use super::straight::Straightened;
-use crate::stroke::simplify::SegmentKinds;
+use crate::stroke::Pieces;
 use crate::stroke::{Bounded, Curve, PxPoint, PxVec};
 use std::collections::VecDeque;
 
@@ -184,11 +184,11 @@ impl Stroke {
 
     /// The line with few vertices, its first one again at the end of a closed one, of the pieces that it may have: if
     /// others than lines, it must not have been cut.
-    pub(crate) fn curve(mut self, cuts: Cuts, bounded: Bounded, segment_kinds: SegmentKinds) -> Curve {
+    pub(crate) fn curve(mut self, cuts: Cuts, bounded: Bounded, pieces: Pieces) -> Curve {
         match self.runs.make_contiguous() {
-            [Run::Open(places)] if segment_kinds != SegmentKinds::Lines => {
+            [Run::Open(places)] if pieces != Pieces::Lines => {
                 let places = core::mem::take(places).into();
-                Centreline::of(Whole { places, closed: self.closed }).curve(bounded, segment_kinds)
+                Centreline::of(Whole { places, closed: self.closed }).curve(bounded, pieces)
             }
             _ => self.polyline(cuts, bounded).into(),
         }
@@ -199,7 +199,7 @@ impl Stroke {
         if let [Run::Open(places)] = self.runs.make_contiguous() {
             let places = core::mem::take(places).into();
             return Centreline::of(Whole { places, closed: self.closed })
-                .curve(bounded, SegmentKinds::Lines)
+                .curve(bounded, Pieces::Lines)
                 .vertices;
         }
         // Each vertex, and whether it is a cut.
@@ -340,7 +340,7 @@ impl Stretch {
         let corners = inner.map(|corner| corner - start).collect();
         let mut vertices =
             Centreline { places: course, corners, width_px: line.width_px, ..Centreline::default() }
-                .curve(bounded, SegmentKinds::Lines)
+                .curve(bounded, Pieces::Lines)
                 .vertices;
         if turned {
             vertices.reverse();

@@ -23,25 +23,27 @@ use crate::{
     stroke::{Curve, PxPoint},
 };
 
-/// What the segments of a stroke may be.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum SegmentKinds {
+/// What strokes are made of. What is more than a straight line is taken where it saves vertices, within the
+/// same tolerance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+pub enum Pieces {
     /// Straight lines.
     #[default]
     Lines,
-    /// And circular arcs.
+    /// Straight lines, circular arcs and whole circles.
     Arcs,
-    /// And cubic curves.
-    Curves,
+    /// Straight lines and cubic curves.
+    Cubics,
 }
 
 impl Bounded {
     /// A stroke through sites.
-    pub(crate) fn stroke(&self, sites: &[PxPoint], closed: bool, kinds: SegmentKinds) -> Curve {
-        match kinds {
-            SegmentKinds::Lines => self.polyline(sites, closed).into(),
-            SegmentKinds::Arcs => self.arcs(sites, closed),
-            SegmentKinds::Curves => self.cubics(sites, closed),
+    pub(crate) fn stroke(&self, sites: &[PxPoint], closed: bool, pieces: Pieces) -> Curve {
+        match pieces {
+            Pieces::Lines => self.polyline(sites, closed).into(),
+            Pieces::Arcs => self.arcs(sites, closed),
+            Pieces::Cubics => self.cubics(sites, closed),
         }
     }
 }
