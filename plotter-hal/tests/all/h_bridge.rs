@@ -308,3 +308,27 @@ proptest! {
         }
     }
 }
+
+/// A lift's motor is on a bridge as any other; it gets what the gate lets a third motor have.
+#[cfg(feature = "third-motor")]
+#[test]
+fn a_lift_takes_its_own_share_and_none_of_the_others() {
+    use plotter_motion::safety::EndSwitches;
+    let wires = Wires::default();
+    let mut lift = wires.bridge();
+    let mut gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+    let [up, down] = [Duty::saturating(0.5), Duty::saturating(-0.25)];
+    lift.start().unwrap();
+    lift.drive(gate.pass(Demand { x: Duty::FULL, y: Duty::FULL }).of_z(Axis::X)).unwrap();
+    assert_eq!(wires.now().voltage(), 0);
+    lift.drive(gate.pass_z(up).of_z(Axis::X)).unwrap();
+    assert_eq!(wires.now().voltage(), 100);
+    gate.set_z_limits(EndSwitches { upper: true, lower: false });
+    lift.drive(gate.pass_z(up).of_z(Axis::X)).unwrap();
+    assert_eq!(wires.now().voltage(), 0);
+    lift.drive(gate.pass_z(down).of_z(Axis::X)).unwrap();
+    assert_eq!(wires.now().voltage(), -50);
+    gate.emergency_stop(true);
+    lift.drive(gate.pass_z(down).of_z(Axis::X)).unwrap();
+    assert_eq!(wires.now().voltage(), 0);
+}

@@ -14,6 +14,7 @@ mod a4988;
 #[cfg(feature = "async")]
 mod async_inputs;
 mod axis;
+mod bad_moments;
 #[cfg(feature = "defmt")]
 mod defmt_formats;
 mod dependencies;

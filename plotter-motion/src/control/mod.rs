@@ -19,6 +19,8 @@ mod equalizer;
 mod last_counts;
 mod learning;
 mod led_axis;
+#[cfg(feature = "third-motor")]
+mod lift;
 mod line_plan;
 mod line_tracking;
 mod per_axis;
@@ -41,6 +43,8 @@ pub use cross_coupled::{CrossCoupled, CrossCoupledSettings};
 pub use drive_ramp::DriveRamp;
 pub use equalizer::{Equalizer, EqualizerSettings};
 pub use learning::{LearnedBin, Learning, LearningSettings};
+#[cfg(feature = "third-motor")]
+pub use lift::{Lift, LiftFault, LiftSettings, LiftState};
 pub use line_tracking::{LineTracking, LineTrackingSettings};
 pub use per_axis::PerAxis;
 pub use planned_line::PlannedLine;

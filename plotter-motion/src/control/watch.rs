@@ -82,6 +82,9 @@ pub(super) struct Watch {
     /// How long the last rows of [`ROW`] edges one way took, s, the present one first; 0 where there was
     /// none.
     times_s: [f32; 3],
+    /// The time before the last edge, s, and how many edges in a row came in pairs.
+    before_s: f32,
+    pairs: u8,
     /// The greatest drive one way and the other since the row before the last began, counts/s^2.
     drives: [f32; 2],
     /// For how long it has turned against its drive, s, and what speed that took from it, counts/s; how many
@@ -110,6 +113,8 @@ impl Watch {
         sense: 0.0,
         edges: 0,
         times_s: [0.0; 3],
+        before_s: 0.0,
+        pairs: 0,
         drives: [0.0; 2],
         against_s: 0.0,
         taken: 0.0,
@@ -221,8 +226,10 @@ impl Watch {
         let sense = direction.sign() as f32;
         let since_s = self.since_edge_s;
         if sense == self.sense {
+            self.looks_for_pairs(since_s);
             self.goes_on(since_s, braking, doubt);
         } else {
+            self.pairs = 0;
             self.turns(since_s, most_accel);
         }
         self.sense = sense;
@@ -230,6 +237,24 @@ impl Watch {
             self.stiffness = self.tried();
         }
         (self.slowest, self.since_edge_s, self.tries, self.pause_s) = ([0.0; 2], 0.0, 0, 0.0);
+    }
+
+    /// Whether edges come two by two, as where each is counted twice: no shaft turns by jerks like these.
+    fn looks_for_pairs(&mut self, since_s: f32) {
+        // A loop that looks for edges tells some two by two as well. One that looks each tenth of a
+        // millisecond, as contouring wants it, makes no gaps of so many seconds.
+        const LEAST_GAP_S: f32 = 4e-4;
+        // A gap to a time within a pair: the marks of a bad encoder are off by a quarter.
+        const UNEVEN: f32 = 8.0;
+        const SURE_EDGES: u8 = 8;
+        let [short_s, long_s] =
+            if since_s < self.before_s { [since_s, self.before_s] } else { [self.before_s, since_s] };
+        self.before_s = since_s;
+        let is_pair = UNEVEN * short_s < long_s && long_s > LEAST_GAP_S;
+        self.pairs = if is_pair { self.pairs + 1 } else { 0 };
+        if self.pairs >= SURE_EDGES {
+            (self.pairs, self.stopped) = (0, Some(Trouble::Encoder));
+        }
     }
 
     /// Another edge the same way.

@@ -444,11 +444,11 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// # Errors
     ///
     /// [`PlanError::Setting`] for a limit that no motion can be planned with, [`PlanError::Mode`] where
-    /// there is no third axis, or a jerk.
+    /// there is no third axis.
     pub fn set_z_limits(&mut self, limits: &ZLimits) -> Result<(), PlanError> {
         limits.check()?;
-        if !M::Z || self.limits.settings.jerk_mm_s3.is_some() {
-            return Err(PlanError::Mode { quantity: if M::Z { "jerk_mm_s3" } else { "z" } });
+        if !M::Z {
+            return Err(PlanError::Mode { quantity: "z" });
         }
         if let Some(rise) = self.front.rise.get_mut() {
             rise.set_limits(limits);
@@ -461,8 +461,9 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// that it asks for is one in space.
     ///
     /// The limits of [`Planner::set_z_limits`] hold on the way. Where the path goes on with another slope,
-    /// z's speed jumps by no more than its acceleration makes within a step; before and after z alone the
-    /// machine stands. No vertex is rounded.
+    /// z's speed jumps by no more than its acceleration makes within a step; before and after z alone, and
+    /// with a limited jerk before and after all that rises, the machine stands. No vertex is rounded. With a
+    /// limited jerk a [`Course`](super::Course) may be told in other units: see its length.
     ///
     /// ```
     /// # use plotter_motion::{Planner, PlannerSettings, PlotOp, Point};

@@ -43,6 +43,8 @@ pub use modes::ThreeAxes;
 pub use modes::{AllModes, ExactOnly, ExactPen, Modes};
 pub(crate) use modes::{Here, Nowhere, Part};
 pub use phase::{Action, Course, Phase, Shape};
+#[cfg(all(feature = "step-ahead", feature = "third-motor"))]
+pub(crate) use rise::HELIX_SHARE;
 #[cfg(feature = "third-motor")]
 pub use rise::ZLimits;
 pub use settings::{AccelLimit, PathMode, PlannerSettings};

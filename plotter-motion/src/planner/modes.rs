@@ -43,7 +43,7 @@ pub struct AllModes;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ExactOnly;
 
-/// [`AllModes`] without S-curves, of a machine with a third axis: a tool that is raised and lowered by a
+/// [`AllModes`], of a machine with a third axis: a tool that is raised and lowered by a
 /// motor of its own, along with the other two. See [`Planner::push_rising`](super::Planner::push_rising).
 #[cfg(feature = "third-motor")]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

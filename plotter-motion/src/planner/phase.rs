@@ -47,7 +47,8 @@ pub struct Course {
     /// Power of the laser at that speed, in 65535ths.
     pub laser_power: u16,
     /// At which height it ends, mm; none of a machine with two axes. Along the course z changes evenly, and
-    /// `length_mm` is the length in space.
+    /// `length_mm` is the length in space; where it rises and the jerk is limited it is that times a number
+    /// from 1 on, and so are the ways, speeds, accelerations and jerks of its phases.
     #[cfg(feature = "third-motor")]
     pub to_z_mm: Option<f64>,
 }

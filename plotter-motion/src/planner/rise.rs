@@ -10,11 +10,16 @@
 //! acceleration makes in the time of the shorter block. What the speed in the plane jumps by is held to the
 //! junction's deviation in the same way as z's to a step. Before and after a block of z alone the machine
 //! stands.
+//!
+//! With a limited jerk one acceleration holds for all blocks. A block that may have only a k-th of it is told
+//! as k times as long, with speeds k times as great: planned with the one acceleration it is then driven with
+//! its own, and with a k-th of the jerk. Steps are counted by shares of a block, which no unit changes. The
+//! units change at its ends, so the machine stands there.
 
 use super::block::Bend;
 use super::limits::Limits;
 use super::stretch::Stretch;
-use crate::extremes::least;
+use crate::extremes::{greatest, least};
 use crate::geom::single;
 use crate::root::root;
 
@@ -57,7 +62,7 @@ impl ZLimits {
 const JUMPS_SHARE: f32 = 0.025;
 /// Share of the acceleration that a helix has along it, and of the one that turns it: √½ of each, which
 /// together are the whole.
-const HELIX_SHARE: f32 = 0.707;
+pub(crate) const HELIX_SHARE: f32 = 0.707;
 
 /// How the last block ends: what z rises by on a millimetre of path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -117,11 +122,22 @@ impl Rise {
                 }
                 _ => {}
             }
+            let mut scale = 1.0;
+            if limits.has_jerk() {
+                let along = limits.along_with_jerk();
+                scale = greatest(1.0, along / accel);
+                accel = along;
+            }
+            form2 *= scale * scale;
+            stretch.feed2 *= scale * scale;
             stretch.bend = Bend::Rising { accel, sweep_rad, form2 };
-            stretch.length_mm = length_mm;
+            stretch.length_mm = scale * length_mm;
             self.slope = slope;
         }
         self.length_mm = stretch.length_mm;
+        if limits.has_jerk() && (before != 0.0 || self.slope != 0.0) {
+            return (stretch, 0.0);
+        }
         let shorter_mm = least(before_mm, self.length_mm);
         (stretch, self.between2(before, self.slope, shorter_mm, limits))
     }

@@ -99,6 +99,8 @@ pub use switches::{Blocked, LimitSwitches};
 
 use crate::kinematics::BeltSigns;
 use crate::{Axis, Direction, StepPair};
+#[cfg(feature = "third-motor")]
+use passed::drive_z;
 use passed::{beam, drive, pulse};
 
 /// The only way from a [`Demand`] to a [`Drive`].
@@ -399,6 +401,31 @@ impl SafetyGate {
     #[cfg(feature = "third-motor")]
     pub const fn set_z_limits(&mut self, switches: EndSwitches) {
         self.z = switches;
+    }
+
+    /// Lets what a DC motor of a third axis is to get through: not into a pressed switch of its axis, nor
+    /// while the machine is stopped.
+    ///
+    /// ```
+    /// # use plotter_motion::{Axis, Duty, LimitSwitches, SafetyGate, safety::EndSwitches};
+    /// let mut gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+    /// gate.set_z_limits(EndSwitches { upper: true, lower: false });
+    /// let [up, down] = [Duty::new(0.5)?, Duty::new(-0.5)?];
+    /// assert_eq!((gate.pass_z(up).z(), gate.pass_z(down).z()), (Duty::ZERO, down));
+    /// assert_eq!(gate.pass_z(down).of_z(Axis::Y).y(), down);
+    /// gate.emergency_stop(true);
+    /// assert_eq!(gate.pass_z(down).z(), Duty::ZERO);
+    /// # Ok::<(), plotter_motion::safety::DutyError>(())
+    /// ```
+    #[cfg(feature = "third-motor")]
+    #[must_use]
+    pub fn pass_z(&self, duty: Duty) -> Drive<'_> {
+        let into_switch = match duty.direction() {
+            Some(Direction::Plus) => self.z.upper,
+            Some(Direction::Minus) => self.z.lower,
+            None => false,
+        };
+        drive_z(if self.stopped || into_switch { Duty::ZERO } else { duty })
     }
 
     /// The limit switches of a third axis as last noted.

@@ -11,6 +11,8 @@ use core::marker::PhantomData;
 pub struct Drive<'gate> {
     x: Duty,
     y: Duty,
+    #[cfg(feature = "third-motor")]
+    z: Duty,
     gate: PhantomData<&'gate SafetyGate>,
 }
 
@@ -25,6 +27,24 @@ impl Drive<'_> {
     #[must_use]
     pub const fn y(self) -> Duty {
         self.y
+    }
+
+    /// The duty of a third motor, upwards: by [`SafetyGate::pass_z`], and then of that alone.
+    #[cfg(feature = "third-motor")]
+    #[must_use]
+    pub const fn z(self) -> Duty {
+        self.z
+    }
+
+    /// The share of a third motor, as the driver of an axis takes it.
+    #[cfg(feature = "third-motor")]
+    #[must_use]
+    pub const fn of_z(self, axis: Axis) -> Self {
+        let (x, y) = match axis {
+            Axis::X => (self.z, Duty::ZERO),
+            Axis::Y => (Duty::ZERO, self.z),
+        };
+        Self { x, y, z: Duty::ZERO, gate: self.gate }
     }
 
     /// The duty of the motor of `axis`.
@@ -45,12 +65,29 @@ impl Drive<'_> {
     /// The same without its end: for a controller that keeps its gate in the same place, and passes the
     /// demand again whenever it tells the gate anything. It lends the drive no longer than itself.
     pub(crate) const fn kept(self) -> Drive<'static> {
-        drive(self.x, self.y)
+        Drive {
+            x: self.x,
+            y: self.y,
+            #[cfg(feature = "third-motor")]
+            z: self.z,
+            gate: PhantomData,
+        }
     }
 }
 
 pub(super) const fn drive(x: Duty, y: Duty) -> Drive<'static> {
-    Drive { x, y, gate: PhantomData }
+    Drive {
+        x,
+        y,
+        #[cfg(feature = "third-motor")]
+        z: Duty::ZERO,
+        gate: PhantomData,
+    }
+}
+
+#[cfg(feature = "third-motor")]
+pub(super) const fn drive_z(z: Duty) -> Drive<'static> {
+    Drive { x: Duty::ZERO, y: Duty::ZERO, z, gate: PhantomData }
 }
 
 /// A step of either motor or of both that may be made: by [`SafetyGate::pass_step`] only. It ends when its
@@ -98,6 +135,12 @@ impl Pulse<'_> {
             (None, Axis::X) => self.x,
             (None, Axis::Y) => self.y,
         }
+    }
+
+    /// The step of the second motor of an axis, where that is not what the first makes.
+    #[cfg(all(feature = "third-motor", feature = "step-ahead"))]
+    pub(crate) const fn apart(self) -> Option<i8> {
+        self.apart
     }
 
     /// The share of a third axis, as the driver of an axis takes it.

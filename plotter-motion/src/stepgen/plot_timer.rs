@@ -23,7 +23,8 @@ pub struct PlotTime {
     /// The pauses that the drawing asks for.
     pub dwell: Duration,
     /// Length of the planned path with the pen down, mm; a rounded corner counts as long as both its
-    /// tangents: more than the curve by 1 % at a turn of 20 degrees, 7 % at 50, 23 % at a right angle.
+    /// tangents: more than the curve by 1 % at a turn of 20 degrees, 7 % at 50, 23 % at a right angle. What
+    /// rises counts as [`Course::length_mm`](crate::planner::Course::length_mm) tells it.
     pub draw_mm: f64,
     /// With the pen up, mm.
     pub travel_mm: f64,

@@ -14,6 +14,7 @@ pub use targets::{OutOfReach, targets};
 
 /// Whether the pen touches the sheet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 pub enum Pen {
     /// Lifted.

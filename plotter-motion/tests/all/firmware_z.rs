@@ -104,6 +104,11 @@ fn path() -> impl Strategy<Value = PathMode> {
     prop_oneof![Just(PathMode::Exact), Just(PathMode::Tolerance { path_tolerance_mm: 0.05 })]
 }
 
+/// Trapezoids, or S-curves.
+fn jerk() -> impl Strategy<Value = Option<f64>> {
+    prop::option::of(1_000.0..50_000.0)
+}
+
 /// Lines, arcs, travels and z alone, in steps of a tenth of a millimetre.
 fn op() -> impl Strategy<Value = (PlotOp, Option<f64>)> {
     let place =
@@ -132,8 +137,9 @@ proptest! {
     fn three_motors_end_where_they_are_told_and_z_keeps_its_limits(
         ops in prop::collection::vec(op(), 1..30),
         path in path(),
+        jerk_mm_s3 in jerk(),
     ) {
-        let settings = PlannerSettings { path, ..PlannerSettings::default() };
+        let settings = PlannerSettings { path, jerk_mm_s3, ..PlannerSettings::default() };
         let events = rising(settings, &ops);
         prop_assert!(events.is_sorted_by_key(|timed| timed.tick));
         let to = ops.last().and_then(|(op, _)| op.target()).unwrap();
@@ -150,8 +156,9 @@ proptest! {
     fn a_drawing_without_heights_is_stepped_as_with_two_axes(
         ops in prop::collection::vec(op().prop_map(|(op, _)| (op, None)), 1..30),
         path in path(),
+        jerk_mm_s3 in jerk(),
     ) {
-        let settings = PlannerSettings { path, ..PlannerSettings::default() };
+        let settings = PlannerSettings { path, jerk_mm_s3, ..PlannerSettings::default() };
         let mut planner = Planner::<16, AllModes>::with_modes(settings).unwrap();
         let flat = events(&mut planner, &mut motors::<AllModes>(), &ops);
         prop_assert_eq!(rising(settings, &ops), flat);
@@ -190,15 +197,47 @@ fn a_wave_in_short_lines_keeps_the_limits_of_z() {
     assert!((11.4..30.0).contains(&time_s), "{time_s}");
 }
 
+/// With a limited jerk z alone is an S-curve of its own limits, and of the jerk its share.
 #[test]
-fn z_is_refused_where_there_is_none_and_with_a_jerk() {
+fn a_tool_that_rises_alone_makes_an_s_curve() {
+    let jerk = PlannerSettings { jerk_mm_s3: Some(20_000.0), ..PlannerSettings::default() };
+    let alone = [(PlotOp::Travel { to: Point::ORIGIN }, Some(10.0))];
+    let events = rising(jerk, &alone);
+    assert_eq!(end(&events), [0, 0, 4000]);
+    // 1000 mm/s² times 0.9 along the path are 18 times z's 50, so its jerk is 1111 mm/s³: 10 mm at 5 mm/s,
+    // 0.1 s to speed up and to brake, and 45 ms of jerk. The last step is made half a step before the end.
+    let took_s = events.last().unwrap().tick as f64 * 1e-6;
+    assert!((took_s - 2.145).abs() < 0.02, "{took_s}");
+    let trapezoid_s = rising(PlannerSettings::default(), &alone).last().unwrap().tick as f64 * 1e-6;
+    assert!((trapezoid_s - 2.1).abs() < 0.01, "{trapezoid_s}");
+    let (fastest, hardest) = felt(&events);
+    assert!(fastest <= 1.01 * Z.speed_mm_s && hardest <= 1.01 * Z.accel_mm_s2, "{fastest} {hardest}");
+    // Before and after what rises with the others the machine stands: 20 mm/s are not kept.
+    let line = |x: f64| PlotOp::Draw { to: Point::new(x, 0.0), feed_mm_s: Some(20.0) };
+    let events = rising(jerk, &[(line(20.0), None), (line(40.0), Some(2.0)), (line(60.0), None)]);
+    assert_eq!(end(&events), [6000, 0, 800]);
+    for x in [2000, 4000] {
+        let mut at = 0;
+        let near: Vec<_> = events
+            .iter()
+            .filter_map(|timed| {
+                let MotorEvent::Step(pair) = timed.event else { return None };
+                at += i32::from(pair.x);
+                (at - x).abs().lt(&3).then_some(timed.tick)
+            })
+            .collect();
+        let slowest_us = near.windows(2).map(|two| two[1] - two[0]).max().unwrap();
+        assert!(slowest_us > 5_000, "{x}: {near:?}");
+    }
+}
+
+#[test]
+fn z_is_refused_where_there_is_none() {
     let up = PlotOp::Travel { to: Point::ORIGIN };
     let mut flat = Planner::<16>::new(PlannerSettings::default()).unwrap();
     assert_eq!(flat.push_rising(up, 1.0), Err(PlanError::Mode { quantity: "z" }));
     assert_eq!(flat.set_z_limits(&Z), Err(PlanError::Mode { quantity: "z" }));
-    let jerk = PlannerSettings { jerk_mm_s3: Some(20_000.0), ..PlannerSettings::default() };
-    let mut planner = Planner::<16, ThreeAxes>::with_modes(jerk).unwrap();
-    assert_eq!(planner.set_z_limits(&Z), Err(PlanError::Mode { quantity: "jerk_mm_s3" }));
+    let mut planner = Planner::<16, ThreeAxes>::with_modes(PlannerSettings::default()).unwrap();
     assert_eq!(planner.push_rising(up, 1.0), Err(PlanError::Mode { quantity: "z" }));
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         for limits in [

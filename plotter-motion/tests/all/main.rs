@@ -31,6 +31,8 @@ mod firmware_mdraw;
 mod firmware_two_tasks;
 #[cfg(feature = "third-motor")]
 mod firmware_z;
+#[cfg(all(feature = "step-ahead", feature = "third-motor"))]
+mod firmware_z_ahead;
 mod gcode_interpreter;
 #[cfg(feature = "alloc")]
 mod gcode_kinds;
@@ -103,6 +105,8 @@ mod sim_enable_pwm;
 mod sim_every_line_ends;
 mod sim_grbl;
 mod sim_klipper;
+#[cfg(feature = "third-motor")]
+mod sim_lift;
 mod sim_marking_board;
 mod sim_planner;
 mod sim_s_curve_bound;

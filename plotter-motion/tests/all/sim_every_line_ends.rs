@@ -62,7 +62,7 @@ fn as_it_is(axis: &AxisConfig, off: f64, chance: &mut Chance) -> AxisConfig {
 struct Outcome {
     target: StepPoint,
     arrived_s: Option<f64>,
-    /// How far from the target the pen truly is.
+    /// How far from the target the worse of both shafts truly is.
     short_counts: f64,
 }
 
@@ -97,7 +97,7 @@ fn line(is_loaded: bool, decoding: Decoding, off: f64, seed: u64, limit: Duratio
     Outcome {
         target,
         arrived_s: closed_loop.controller.has_arrived().then_some(closed_loop.now.as_secs_f64()),
-        short_counts: (x - f64::from(target.x)).hypot(y - f64::from(target.y)),
+        short_counts: (x - f64::from(target.x)).abs().max((y - f64::from(target.y)).abs()),
     }
 }
 
@@ -105,7 +105,7 @@ fn line(is_loaded: bool, decoding: Decoding, off: f64, seed: u64, limit: Duratio
 fn every_line_ends(off: f64, lines: u64, limit: Duration) {
     for is_loaded in [false, true] {
         for decoding in [Decoding::X1, Decoding::X4] {
-            let (mut slowest_s, mut farthest_counts) = ((0.0_f64, 0), (0.0_f64, 0));
+            let (mut slowest_s, mut farthest_counts, mut beside) = ((0.0_f64, 0), (0.0_f64, 0), [0_u64; 4]);
             for seed in 1..=lines {
                 let outcome = line(is_loaded, decoding, off, seed, limit);
                 let about = format!("loaded {is_loaded}, {decoding:?}, off by {off}, seed {seed}");
@@ -114,20 +114,26 @@ fn every_line_ends(off: f64, lines: u64, limit: Duration) {
                 if arrived_s > slowest_s.0 {
                     slowest_s = (arrived_s, seed);
                 }
+                beside[(outcome.short_counts as usize).min(3)] += 1;
                 if outcome.short_counts > farthest_counts.0 {
                     farthest_counts = (outcome.short_counts, seed);
                 }
             }
             let ((slowest_s, slow), (farthest_counts, far)) = (slowest_s, farthest_counts);
             println!(
-                "off by {off}, loaded {is_loaded}, {decoding:?}: {slowest_s:.2} s at most (seed {slow}), {farthest_counts:.1} counts off the target (seed {far})"
+                "off by {off}, loaded {is_loaded}, {decoding:?}: {slowest_s:.2} s at most (seed {slow}), {farthest_counts:.2} counts off the target (seed {far}), {beside:?} by 0, 1, 2, 3 and more whole ones"
             );
-            // x1 counts may be lost where a shaft swings about an edge (see QuadratureX1); x4 counts are
-            // where the shaft is.
-            assert!(
-                decoding == Decoding::X1 || farthest_counts < 2.0,
-                "{farthest_counts} counts off the target"
-            );
+            // x4 counts are where the shaft is. Of x1 ones the first is known to a count, since the shafts
+            // begin anywhere, and it has two places (see QuadratureX1); a line that ends farther off has lost
+            // one.
+            let most_lost = match decoding {
+                Decoding::X1 if off > 0.3 => lines / 20 + 2,
+                Decoding::X1 => lines / 40,
+                _ => 0,
+            };
+            let lost = beside[2] + beside[3];
+            assert!(lost <= most_lost, "{lost} of {lines} lines");
+            assert!(decoding == Decoding::X1 || farthest_counts < 1.0, "{farthest_counts} counts");
         }
     }
 }

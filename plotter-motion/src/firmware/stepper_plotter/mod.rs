@@ -175,7 +175,8 @@
 //! With the feature `third-motor` and [`ThreeAxes`](crate::planner::ThreeAxes) a machine has a third axis
 //! (`ZAxis`), a second motor on x or y (`SecondMotor`), or both. Their steps are given by the same
 //! [`StepperPlotter::poll`]: z's alone ([`Pulse::z`](crate::safety::Pulse)), the second motor's with those
-//! of the first. Homing begins with z, upwards, then makes the two motors square, then homes x and y.
+//! of the first. Homing begins with z, upwards, then makes the two motors square, then homes x and y. All of
+//! it is the same in two halves.
 //!
 //! ```
 //! # #[cfg(feature = "third-motor")] {

@@ -417,6 +417,8 @@ impl<M: Modes> Motion<M> {
             let time_s = now.saturating_sub(began).as_secs_f32();
             if time_s > phase.duration_s { 0.0 } else { greatest(phase.speed_at::<M>(time_s), 0.0) }
         });
+        #[cfg(feature = "third-motor")]
+        let speed_mm_s = self.true_speed(speed_mm_s);
         let planned = self.planner.blocks() + usize::from(has_work);
         Status {
             activity,

@@ -113,7 +113,7 @@ impl Setting {
                 return Err(SettingProblem::StepRate);
             }
             // A travel that no longer reaches the heights of the pen.
-            if z.check(true, &settings.planner).is_err() {
+            if z.check(true).is_err() {
                 return Err(SettingProblem::OutOfRange);
             }
         }

@@ -247,7 +247,7 @@ impl StepperPlotterSettings {
         }
         #[cfg(feature = "third-motor")]
         if let Some(z) = &self.z
-            && let Err(error) = z.check(M::Z, &self.planner)
+            && let Err(error) = z.check(M::Z)
         {
             return Err(SettingsError::Planner(error));
         }

@@ -1,9 +1,9 @@
 //! [`ZAxis`]: a third motor, and how it is homed.
 
+use crate::Direction;
 use crate::decimal_text::Whole;
 use crate::planner::{PlanError, ZLimits};
 use crate::safety::EndSwitches;
-use crate::{Direction, PlannerSettings};
 use core::fmt;
 
 /// Greatest travel that is taken, mm: as much as of the other two.
@@ -69,7 +69,7 @@ impl ZAxis {
     }
 
     /// `is_there`: whether the controller has a third axis.
-    pub(super) const fn check(&self, is_there: bool, planner: &PlannerSettings) -> Result<(), PlanError> {
+    pub(super) const fn check(&self, is_there: bool) -> Result<(), PlanError> {
         const fn within(quantity: &'static str, value: f64, least: f64, most: f64) -> Result<(), PlanError> {
             if value >= least && value <= most {
                 Ok(())
@@ -79,9 +79,6 @@ impl ZAxis {
         }
         if !is_there {
             return Err(PlanError::Mode { quantity: "z" });
-        }
-        if planner.jerk_mm_s3.is_some() {
-            return Err(PlanError::Mode { quantity: "jerk_mm_s3 with z" });
         }
         if let Err(error) = self.limits().check() {
             return Err(error);

@@ -74,6 +74,13 @@ pub(in super::super) enum Curve {
     Line,
     /// 1 / radius, 1/mm.
     Arc(f32),
+    /// It rises or falls, and with that may curve.
+    #[cfg(feature = "third-motor")]
+    Rising {
+        /// Acceleration along it by which z is driven as hard as it may be, mm/s².
+        of_z_mm_s2: f32,
+        bends: bool,
+    },
     /// A corner that is rounded: a length on which nothing is braked.
     Corner,
 }
@@ -94,6 +101,11 @@ impl Curve {
             Self::Arc(per_mm) => {
                 let across = speed_mm_s * speed_mm_s * per_mm / accel_mm_s2;
                 if across < 1.0 { libm::sqrtf(1.0 - across * across) } else { 0.0 }
+            }
+            #[cfg(feature = "third-motor")]
+            Self::Rising { of_z_mm_s2, bends } => {
+                let in_plane = if bends { crate::planner::HELIX_SHARE } else { 1.0 };
+                crate::extremes::least(in_plane, of_z_mm_s2 / accel_mm_s2)
             }
             Self::Corner => 0.0,
         }

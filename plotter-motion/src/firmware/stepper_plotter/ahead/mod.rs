@@ -64,6 +64,7 @@
 //! ```
 
 pub(super) mod energy;
+pub(super) mod makes;
 mod planning;
 mod shared;
 mod stepping;

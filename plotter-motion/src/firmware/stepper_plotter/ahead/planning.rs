@@ -1,18 +1,22 @@
 //! [`Planning`]: the half in the main loop.
 
+#[cfg(feature = "third-motor")]
+mod third;
+mod told;
+
 use super::super::motion::{Made, whole_us};
-use super::super::{
-    Drivers, Host, Lateness, Receive, Signal, StartupLines, Status, StepperPlotter, StepperPlotterSettings,
-    Stop, StoredSettings,
-};
+use super::super::{Drivers, Host, Receive, Signal, StepperPlotter, Stop};
+use super::Stepping;
 use super::energy::{Curve, Energy};
+use super::makes::Makes;
+#[cfg(feature = "third-motor")]
+use super::shared::Third;
 use super::shared::{Found, In, Orders, StepsAhead, either};
 use super::words::{MOST_AFTER_US, MOST_WAIT_US, MOST_WORDS, Stretch, Word};
-use super::{Stepping, Underruns};
 use crate::extremes::{greatest, least};
 use crate::planner::{AllModes, Modes, Phase};
 use crate::safety::Blocked;
-use crate::{Axis, Direction, PlannerSettings, StepPair, StepPoint};
+use crate::{Axis, Direction, PlannerSettings, StepPair};
 use core::sync::atomic::Ordering;
 use core::time::Duration;
 
@@ -52,7 +56,7 @@ enum Flush {
 #[derive(Clone, Debug, Default)]
 struct Gathered {
     /// Which motors, and how long after what was before, us.
-    steps: [(StepPair, u64); STEPS],
+    steps: [(Makes, u64); STEPS],
     count: usize,
     ways: StepPair,
     /// The number of their phase, which begins with them.
@@ -79,6 +83,11 @@ pub struct Planning<'a, H: Host = Receive, M: Modes = AllModes> {
     /// When what was put in last is due, as planned, us.
     clock_us: u64,
     orders: Orders,
+    /// Its limit switches, and the steps at which the other half began to count.
+    #[cfg(feature = "third-motor")]
+    third: Third,
+    #[cfg(feature = "third-motor")]
+    z_from: i32,
     /// What the other half has not heard of yet.
     waits_for: Option<Flush>,
     put_off_us: u32,
@@ -98,7 +107,6 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
     /// Takes a machine that stands, one that was just made, apart: into one half that plans in the main loop
     /// and one that steps in a timer's interrupt, with `memory` between them.
     pub fn split<const N: usize>(mut self, memory: &mut StepsAhead<N>) -> (Planning<'_, H, M>, Stepping<'_>) {
-        const { assert!(!M::Z, "a third axis is not stepped ahead") }
         let motion = &mut self.motion;
         let settings = *motion.settings();
         let at = motion.stands_at();
@@ -107,6 +115,13 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
         let (steps, out) = memory.ends(at.0, at.1);
         let gate = motion.begin_ahead();
         let stepping = Stepping::new(out, gate, at, settings.backlash, motion.pen_deg());
+        #[cfg(feature = "third-motor")]
+        let stepping = stepping.with_second(settings.second.map(|second| second.axis));
+        #[cfg(feature = "third-motor")]
+        let (third, z_from) = (
+            Third { z: motion.gate().z_limits(), second: motion.gate().second_limits() },
+            motion.z_steps().unwrap_or_default(),
+        );
         let orders = Orders { limits, button: is_pressed, latched: is_latched, ..Orders::default() };
         let steps_per_mm = settings.x_steps_per_mm.max(settings.y_steps_per_mm);
         let pen_deg = motion.pen_deg();
@@ -119,6 +134,10 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
             phase: (0, Phase::default(), Curve::Line),
             clock_us: 0,
             orders,
+            #[cfg(feature = "third-motor")]
+            third,
+            #[cfg(feature = "third-motor")]
+            z_from,
             waits_for: None,
             put_off_us: 0,
             is_behind: false,
@@ -130,6 +149,8 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
             planned_at: Duration::ZERO,
         };
         planning.order();
+        #[cfg(feature = "third-motor")]
+        planning.steps.shared.third.store(planning.third.bits().into(), Ordering::Release);
         (planning, stepping)
     }
 }
@@ -253,18 +274,28 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
         let more_us = put_off_us.wrapping_sub(core::mem::replace(&mut self.put_off_us, put_off_us));
         motion.put_off(Duration::from_micros(more_us.into()));
         motion.come_to_rest();
-        let (at, gap) = self.steps.made();
-        motion.note_made(Made { at, gap, stands: true });
+        let made = self.made(true);
+        self.plotter.motion.note_made(made);
         self.clock_us = whole_us(now);
         let before = (self.plotter.link.commands.len(), self.pen_deg, self.power);
-        let made = self.plotter.poll(now, Drivers::Ready).map(|step| (step.at, StepPair::from(step.pulse)));
+        #[cfg(feature = "third-motor")]
+        let second = self.plotter.settings().second;
+        let step = self.plotter.poll(now, Drivers::Ready).map(|step| {
+            #[cfg(feature = "third-motor")]
+            if let Some(makes) = third::makes(step.pulse, second) {
+                return (step.at, makes);
+            }
+            (step.at, Makes::Pair(step.pulse.into()))
+        });
+        #[cfg(feature = "third-motor")]
+        self.note_homed_z(made.z, step.map(|(_, makes)| makes));
         self.put_others(self.clock_us);
         if self.plotter.motion.take_homed() {
             self.flush(Flush::Homed);
             self.order();
             return false;
         }
-        if let Some((at, step)) = made {
+        if let Some((at, step)) = step {
             self.gather(whole_us(at), step);
             self.put_gathered();
             self.plotter.motion.note_given();
@@ -302,7 +333,8 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
     }
 
     /// Takes a step that is due at a time.
-    fn gather(&mut self, at_us: u64, step: StepPair) {
+    fn gather(&mut self, at_us: u64, makes: Makes) {
+        let step = makes.pair();
         let began_us = self.clock_us;
         let us = self.after_us(at_us);
         let stretch = self.plotter.motion.stretch();
@@ -323,7 +355,7 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
             (gathered.stretch, gathered.began_us, gathered.us) = (stretch, began_us, 0);
         }
         if let Some(slot) = self.gathered.steps.get_mut(self.gathered.count) {
-            *slot = (step, us);
+            *slot = (makes, us);
             self.gathered.count += 1;
         }
         self.gathered.us = self.gathered.us.saturating_add(us);
@@ -355,26 +387,49 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
         }
         let energy = self.energy.at_speed(fastest);
         self.steps.put(Word::Stretch(Stretch { from_rest, ways, per_step, energy }));
-        for &(step, us) in self.gathered.steps.iter().take(count) {
+        for &(makes, us) in self.gathered.steps.iter().take(count) {
             let after_us = u16::try_from(us).ok().filter(|us| *us <= MOST_AFTER_US);
             if after_us.is_none() {
                 put_wait(&mut self.steps, us);
             }
             let after_us = after_us.unwrap_or(0);
-            self.steps.put(Word::Step { x: step.x != 0, y: step.y != 0, after_us });
+            self.steps.put(match makes {
+                Makes::Pair(step) => Word::Step { x: step.x != 0, y: step.y != 0, after_us },
+                #[cfg(feature = "third-motor")]
+                Makes::Z(way) => Word::StepZ { up: way > 0, after_us },
+                #[cfg(feature = "third-motor")]
+                Makes::Apart(axis, ways) => Word::Apart { axis, ways, after_us },
+            });
         }
         self.steps.tell(u32::from(per_step) * u32::from(steps));
         self.gathered.count = 0;
     }
 
+    /// What has really been made.
+    fn made(&self, stands: bool) -> Made {
+        let (at, gap) = self.steps.made();
+        Made {
+            at,
+            gap,
+            #[cfg(feature = "third-motor")]
+            z: self.z_from.wrapping_add(self.steps.made_z()),
+            stands,
+        }
+    }
+
     /// Hears what the other half has found, and lets the motion side know where the machine really is.
     fn look(&mut self, now: Duration) {
         let found = Found::of_bits(self.steps.shared.found.load(Ordering::Acquire));
-        let (at, gap) = self.steps.made();
+        let made = self.made(self.gathered.count == 0 && self.steps.is_drained());
         let motion = &mut self.plotter.motion;
-        let stands = self.gathered.count == 0 && self.steps.is_drained();
         if self.waits_for != Some(Flush::Homed) {
-            motion.note_made(Made { at, gap, stands });
+            motion.note_made(made);
+        }
+        #[cfg(feature = "third-motor")]
+        {
+            let Third { z, second } = self.third.or(found.third);
+            motion.z_switches(z);
+            motion.second_switches(second);
         }
         let limits = either(self.orders.limits, found.limits);
         let is_pressed_anew = core::mem::replace(&mut self.presses, found.presses) != found.presses;
@@ -390,7 +445,9 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
         {
             let why = match blocked {
                 Blocked::Limit { axis, end } => Stop::Limit { axis, end },
-                _ => Stop::Emergency,
+                #[cfg(feature = "third-motor")]
+                Blocked::LimitZ { end } => Stop::LimitZ { end },
+                Blocked::Stopped => Stop::Emergency,
             };
             self.stop(why);
         } else if let Some(what) = self.waits_for
@@ -402,11 +459,13 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
             self.steps.tell_rest();
             self.clock_us = whole_us(now);
             let motion = &mut self.plotter.motion;
-            motion.note_made(Made { at, gap, stands: true });
-            motion.come_back_to(at, gap);
+            motion.note_made(Made { stands: true, ..made });
+            motion.come_back_to(made.at, made.gap);
             match what {
                 // A step that homing makes into a switch is not missed: homing sees the switch itself.
                 Flush::Stop(Stop::Limit { .. }) if motion.is_homing() => {}
+                #[cfg(feature = "third-motor")]
+                Flush::Stop(Stop::LimitZ { .. }) if motion.is_homing() => {}
                 Flush::Stop(why) => motion.stop_for(why, &mut self.plotter.link),
                 Flush::Homed => {}
             }
@@ -500,55 +559,6 @@ impl<H: Host, M: Modes> Planning<'_, H, M> {
         let free = self.plotter.motion.reset_emergency_stop();
         self.end_call(now);
         free
-    }
-
-    /// See [`StepperPlotter::stored`].
-    #[must_use]
-    pub fn stored(&self) -> StoredSettings {
-        self.plotter.stored()
-    }
-
-    /// See [`StepperPlotter::startup_lines`].
-    #[must_use]
-    pub fn startup_lines(&self) -> StartupLines {
-        self.plotter.startup_lines()
-    }
-
-    /// See [`StepperPlotter::settings`].
-    #[must_use]
-    pub fn settings(&self) -> StepperPlotterSettings {
-        self.plotter.settings()
-    }
-
-    /// What the machine does.
-    #[must_use]
-    pub fn status(&mut self, now: Duration) -> Status {
-        self.look(now);
-        self.plotter.status(now)
-    }
-
-    /// Where the motors stand: steps really made.
-    #[must_use]
-    pub fn position(&self) -> StepPoint {
-        self.steps.made().0
-    }
-
-    /// How late steps have been given since the machine was switched on: whether the interrupt comes in time.
-    #[must_use]
-    pub fn lateness(&self) -> Lateness {
-        let shared = self.steps.shared;
-        Lateness::told(shared.late_steps.load(Ordering::Acquire), shared.latest_us.load(Ordering::Acquire))
-    }
-
-    /// How often there were too few steps: whether the main loop comes in time, and the memory is large
-    /// enough.
-    #[must_use]
-    pub fn underruns(&self) -> Underruns {
-        let shared = self.steps.shared;
-        Underruns {
-            slowed_steps: shared.slowed_steps.load(Ordering::Acquire),
-            stops: shared.stops.load(Ordering::Acquire),
-        }
     }
 }
 

@@ -2,8 +2,9 @@
 
 use super::super::play::Gap;
 use super::words::{MOST_WORDS, Word};
-use crate::{Axis, Direction};
-use crate::{LimitSwitches, StepPoint, safety::Blocked};
+#[cfg(feature = "third-motor")]
+use crate::safety::EndSwitches;
+use crate::{Axis, Direction, LimitSwitches, StepPoint, safety::Blocked};
 use core::sync::atomic::{AtomicI32, AtomicU16, AtomicU32, Ordering};
 
 /// The memory of a [`Planning`](super::Planning) and a [`Stepping`](super::Stepping): the steps between them,
@@ -35,6 +36,11 @@ pub(super) struct Shared {
     pub(super) tail: AtomicU32,
     pub(super) x: AtomicI32,
     pub(super) y: AtomicI32,
+    #[cfg(feature = "third-motor")]
+    pub(super) z: AtomicI32,
+    /// The switches of a third motor ([`Third`]), by planning.
+    #[cfg(feature = "third-motor")]
+    pub(super) third: AtomicU32,
     pub(super) gap: AtomicU32,
     /// [`Found`], by stepping.
     pub(super) found: AtomicU32,
@@ -69,6 +75,10 @@ impl<const N: usize> StepsAhead<N> {
                 tail: number(),
                 x: AtomicI32::new(0),
                 y: AtomicI32::new(0),
+                #[cfg(feature = "third-motor")]
+                z: AtomicI32::new(0),
+                #[cfg(feature = "third-motor")]
+                third: number(),
                 gap: number(),
                 found: number(),
                 put_off_us: number(),
@@ -172,6 +182,12 @@ impl In<'_> {
         let at = StepPoint::new(self.shared.x.load(Ordering::Acquire), self.shared.y.load(Ordering::Acquire));
         (at, Gap::of_bits(self.shared.gap.load(Ordering::Acquire)))
     }
+
+    /// The same of a third motor, from where it stood at first.
+    #[cfg(feature = "third-motor")]
+    pub(super) fn made_z(&self) -> i32 {
+        self.shared.z.load(Ordering::Acquire)
+    }
 }
 
 /// Where stepping takes them out.
@@ -267,12 +283,40 @@ impl Orders {
     }
 }
 
+/// The limit switches of a third axis, and of the second motor of an axis.
+#[cfg(feature = "third-motor")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Third {
+    pub(super) z: EndSwitches,
+    pub(super) second: EndSwitches,
+}
+
+#[cfg(feature = "third-motor")]
+impl Third {
+    pub(super) fn bits(self) -> u8 {
+        let of = |ends: EndSwitches| u8::from(ends.lower) | u8::from(ends.upper) << 1;
+        of(self.z) | of(self.second) << 2
+    }
+
+    pub(super) fn of_bits(bits: u8) -> Self {
+        let ends = |bits: u8| EndSwitches { lower: bits & 1 != 0, upper: bits & 2 != 0 };
+        Self { z: ends(bits), second: ends(bits >> 2) }
+    }
+
+    /// Those that either of them has.
+    pub(super) fn or(self, other: Self) -> Self {
+        Self::of_bits(self.bits() | other.bits())
+    }
+}
+
 /// What stepping has found out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Found {
     /// What it has itself been told of switches and button.
     pub(super) limits: LimitSwitches,
     pub(super) button: bool,
+    #[cfg(feature = "third-motor")]
+    pub(super) third: Third,
     /// Why a step was not made. Nothing more is made until all that waits has been left out.
     pub(super) blocked: Option<Blocked>,
     /// [`Orders::flushes`] as they have been carried out.
@@ -290,22 +334,36 @@ impl Found {
             Some(Blocked::Limit { axis, end }) => {
                 2 | u8::from(axis == Axis::Y) << 2 | u8::from(end == Direction::Plus) << 3
             }
-            Some(_) => 1,
+            #[cfg(feature = "third-motor")]
+            Some(Blocked::LimitZ { end }) => 3 | u8::from(end == Direction::Plus) << 3,
+            Some(Blocked::Stopped) => 1,
         };
+        #[cfg(feature = "third-motor")]
+        let blocked = blocked | self.third.bits() << 4;
         u32::from_le_bytes([flags, blocked, self.flushes, self.presses])
     }
 
     pub(super) fn of_bits(bits: u32) -> Self {
         let [flags, blocked, flushes, presses] = bits.to_le_bytes();
+        #[cfg(feature = "third-motor")]
+        let third = Third::of_bits(blocked >> 4);
+        let end = if blocked & 8 == 0 { Direction::Minus } else { Direction::Plus };
         let blocked = match blocked & 3 {
             0 => None,
             1 => Some(Blocked::Stopped),
-            _ => Some(Blocked::Limit {
-                axis: if blocked & 4 == 0 { Axis::X } else { Axis::Y },
-                end: if blocked & 8 == 0 { Direction::Minus } else { Direction::Plus },
-            }),
+            #[cfg(feature = "third-motor")]
+            3 => Some(Blocked::LimitZ { end }),
+            _ => Some(Blocked::Limit { axis: if blocked & 4 == 0 { Axis::X } else { Axis::Y }, end }),
         };
-        Self { limits: limits_of(flags), button: flags & 0x10 != 0, blocked, flushes, presses }
+        Self {
+            limits: limits_of(flags),
+            button: flags & 0x10 != 0,
+            #[cfg(feature = "third-motor")]
+            third,
+            blocked,
+            flushes,
+            presses,
+        }
     }
 }
 
@@ -330,9 +388,22 @@ mod tests {
         for axis in [Axis::X, Axis::Y] {
             for end in [Direction::Minus, Direction::Plus] {
                 for blocked in [None, Some(Blocked::Stopped), Some(Blocked::Limit { axis, end })] {
-                    let found = Found { limits, button: false, blocked, flushes: 200, presses: 3 };
+                    let found = Found { limits, blocked, flushes: 200, presses: 3, ..Found::default() };
                     assert_eq!(Found::of_bits(found.bits()), found);
                 }
+            }
+        }
+    }
+
+    #[cfg(feature = "third-motor")]
+    #[test]
+    fn what_was_found_of_a_third_motor_comes_out_as_it_went_in() {
+        for bits in 0..16 {
+            let third = Third::of_bits(bits);
+            assert_eq!(third.bits(), bits);
+            for end in [Direction::Minus, Direction::Plus] {
+                let found = Found { third, blocked: Some(Blocked::LimitZ { end }), ..Found::default() };
+                assert_eq!(Found::of_bits(found.bits()), found);
             }
         }
     }

@@ -1,8 +1,12 @@
 //! [`Stepping`]: the half in the timer's interrupt.
 
+#[cfg(feature = "third-motor")]
+mod third;
+
 use super::super::play::Gap;
 use super::super::{Drivers, Lateness};
 use super::energy::LEAST_ENERGY;
+use super::makes::Makes;
 use super::shared::{Found, Orders, Out, either};
 use super::words::{MOST_WAIT_US, Word};
 use crate::kinematics::Backlash;
@@ -17,7 +21,7 @@ enum Thing {
     None,
     /// A wait ends.
     Wait,
-    Step(StepPair),
+    Step(Makes),
     Pen(u8),
     Laser {
         power: u16,
@@ -37,6 +41,13 @@ pub struct Stepping<'a> {
     out: Out<'a>,
     gate: SafetyGate,
     orders: u32,
+    #[cfg(feature = "third-motor")]
+    third: u32,
+    /// The axis that has two motors.
+    #[cfg(feature = "third-motor")]
+    second: Option<Axis>,
+    #[cfg(feature = "third-motor")]
+    z: i32,
     found: Found,
     position: StepPoint,
     gap: Gap,
@@ -77,6 +88,12 @@ impl<'a> Stepping<'a> {
             out,
             gate,
             orders: 0,
+            #[cfg(feature = "third-motor")]
+            third: 0,
+            #[cfg(feature = "third-motor")]
+            second: None,
+            #[cfg(feature = "third-motor")]
+            z: 0,
             found: Found::default(),
             position: at.0,
             gap: at.1,
@@ -106,10 +123,21 @@ impl<'a> Stepping<'a> {
     pub fn tick(&mut self, now_us: u32, drivers: Drivers) -> Option<Pulse<'_>> {
         self.next_step(now_us, drivers).then_some(())?;
         let Thing::Step(step) = core::mem::replace(&mut self.thing, Thing::None) else { return None };
-        match self.gate.pass_step(step).map(Pulse::kept) {
+        let passed = match step {
+            Makes::Pair(pair) => self.gate.pass_step(pair),
+            #[cfg(feature = "third-motor")]
+            Makes::Z(way) => self.gate.pass_z_step(way),
+            #[cfg(feature = "third-motor")]
+            Makes::Apart(axis, ways) => self.gate.pass_apart(axis, ways),
+        };
+        match passed.map(Pulse::kept) {
             Ok(pulse) => {
                 self.given(now_us);
                 self.count(pulse.into());
+                #[cfg(feature = "third-motor")]
+                if pulse.z() != 0 {
+                    self.count_z(pulse.z());
+                }
                 self.out.done();
                 // When the next one is due is known at once, so an interrupt is one call.
                 self.fetch(now_us);
@@ -158,6 +186,10 @@ impl<'a> Stepping<'a> {
             if self.orders != self.out.shared.orders.load(Ordering::Acquire) {
                 self.obey();
             }
+            #[cfg(feature = "third-motor")]
+            if self.third != self.out.shared.third.load(Ordering::Acquire) {
+                self.read_switches();
+            }
             if self.thing == Thing::None && !self.fetch(now_us) {
                 return false;
             }
@@ -197,11 +229,12 @@ impl<'a> Stepping<'a> {
                 Word::Step { x, y, after_us } => {
                     let step =
                         StepPair { x: if x { self.ways.x } else { 0 }, y: if y { self.ways.y } else { 0 } };
-                    self.thing = Thing::Step(step);
-                    let after_us = self.stretched(after_us.into());
-                    self.here = self.here.wrapping_add(self.per_step.into());
-                    after_us
+                    self.makes(Makes::Pair(step), after_us)
                 }
+                #[cfg(feature = "third-motor")]
+                Word::StepZ { up, after_us } => self.makes(Makes::Z(if up { 1 } else { -1 }), after_us),
+                #[cfg(feature = "third-motor")]
+                Word::Apart { axis, ways, after_us } => self.makes(Makes::Apart(axis, ways), after_us),
                 Word::Stretch(stretch) => {
                     if stretch.from_rest {
                         self.slowed = false;
@@ -226,6 +259,15 @@ impl<'a> Stepping<'a> {
             self.due_us = self.time_us.wrapping_add(after_us);
             return true;
         }
+    }
+
+    /// The next thing is what motors make; gives how long after the one before.
+    #[inline(always)] // in `tick`, which is the interrupt
+    fn makes(&mut self, makes: Makes, after_us: u16) -> u32 {
+        self.thing = Thing::Step(makes);
+        let after_us = self.stretched(after_us.into());
+        self.here = self.here.wrapping_add(self.per_step.into());
+        after_us
     }
 
     /// How long after the thing before the next one is due, as fast as the machine may be: it must be able to
@@ -402,6 +444,8 @@ impl<'a> Stepping<'a> {
         let orders = Orders::of_bits(self.orders);
         self.gate.set_limits(either(orders.limits, self.found.limits));
         self.gate.emergency_stop(orders.button | self.found.button);
+        #[cfg(feature = "third-motor")]
+        self.read_third();
     }
 
     /// Servo of the pen, degrees.

@@ -3,6 +3,8 @@
 //! A step is one word: which motors, and how long after the thing before. What all steps of a stretch have in
 //! common, their directions and how the machine may brake on them, stands before them.
 
+#[cfg(feature = "third-motor")]
+use crate::Axis;
 use crate::StepPair;
 
 /// Words of the longest thing: a stretch without its steps.
@@ -18,6 +20,10 @@ const STRETCH: u16 = 0x0000;
 const WAIT: u16 = 0x0800;
 const PEN: u16 = 0x1000;
 const LASER: u16 = 0x1800;
+#[cfg(feature = "third-motor")]
+const STEP_Z: u16 = 0x2000;
+#[cfg(feature = "third-motor")]
+const APART: u16 = 0x2800;
 
 /// A stretch of steps in one direction each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,6 +54,16 @@ pub(super) enum Word {
         /// At most [`MOST_AFTER_US`].
         after_us: u16,
     },
+    /// A step of the third motor, so long after what was before, us.
+    #[cfg(feature = "third-motor")]
+    StepZ {
+        /// Upwards.
+        up: bool,
+        after_us: u16,
+    },
+    /// Steps of both motors of an axis, each for itself, so long after what was before, us.
+    #[cfg(feature = "third-motor")]
+    Apart { axis: Axis, ways: [i8; 2], after_us: u16 },
     /// The servo turns there, degrees.
     Pen(u8),
     /// The laser's power, in 65535ths; whether it ends a darkness that was asked for at once.
@@ -82,6 +98,14 @@ impl Word {
                 let [low, high] = halves(us);
                 (3, [WAIT, low, high, 0])
             }
+            #[cfg(feature = "third-motor")]
+            Self::StepZ { up, after_us } => (2, [STEP_Z | u16::from(up), after_us, 0, 0]),
+            #[cfg(feature = "third-motor")]
+            Self::Apart { axis, ways: [first, second], after_us } => {
+                let way = |way: i8| u16::from(way > 0) | u16::from(way < 0) << 1;
+                let head = u16::from(axis == Axis::Y) | way(first) << 1 | way(second) << 3;
+                (2, [APART | head, after_us, 0, 0])
+            }
             Self::Pen(deg) => (1, [PEN | u16::from(deg), 0, 0, 0]),
             Self::Laser { power, ends_darkness } => (2, [LASER | u16::from(ends_darkness), power, 0, 0]),
         }
@@ -100,6 +124,14 @@ impl Word {
             WAIT => (3, Self::Wait(whole([word(1), word(2)]))),
             PEN => (1, Self::Pen(u8::try_from(head & SMALL).unwrap_or(u8::MAX))),
             LASER => (2, Self::Laser { power: word(1), ends_darkness: head & 1 != 0 }),
+            #[cfg(feature = "third-motor")]
+            STEP_Z => (2, Self::StepZ { up: head & 1 != 0, after_us: word(1) }),
+            #[cfg(feature = "third-motor")]
+            APART => {
+                let axis = if head & 1 == 0 { Axis::X } else { Axis::Y };
+                let way = |bits: u16| if bits & 1 != 0 { 1 } else { -i8::from(bits & 2 != 0) };
+                (2, Self::Apart { axis, ways: [way(head >> 1), way(head >> 3)], after_us: word(1) })
+            }
             _ => {
                 let way = |negative: u16| if head & negative == 0 { 1 } else { -1 };
                 let ways = StepPair { x: way(2), y: way(4) };
@@ -127,10 +159,29 @@ mod tests {
             (Word::Laser { power: 65_535, ends_darkness: true }, 2),
             (Word::Laser { power: 0, ends_darkness: false }, 2),
         ] {
-            let (len, words) = word.encoded();
-            assert_eq!(len, count);
-            let [head, ..] = words;
-            assert_eq!(Word::decoded(head, |at| words[at as usize]), (len, word));
+            comes_out(word, count);
+        }
+    }
+
+    fn comes_out(word: Word, count: u32) {
+        let (len, words) = word.encoded();
+        assert_eq!(len, count);
+        let [head, ..] = words;
+        assert_eq!(Word::decoded(head, |at| words[at as usize]), (len, word));
+    }
+
+    #[cfg(feature = "third-motor")]
+    #[test]
+    fn so_does_what_a_third_motor_makes() {
+        for up in [true, false] {
+            comes_out(Word::StepZ { up, after_us: u16::MAX }, 2);
+        }
+        for axis in [Axis::X, Axis::Y] {
+            for first in -1..=1 {
+                for second in -1..=1 {
+                    comes_out(Word::Apart { axis, ways: [first, second], after_us: 7 }, 2);
+                }
+            }
         }
     }
 }

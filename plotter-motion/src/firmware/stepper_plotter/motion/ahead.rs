@@ -1,12 +1,13 @@
 //! What the motion side does differently when it is asked for its steps ahead of their time.
 
 use super::super::ahead::energy::Curve;
+use super::super::ahead::makes::Makes;
 use super::super::play::Gap;
 use super::super::{Link, Stop};
 use super::{Motion, State};
 use crate::planner::{Action, Keep as _, Modes, Phase};
 use crate::stepgen::MotorEvent;
-use crate::{LimitSwitches, PlannerSettings, SafetyGate, StepPair, StepPoint};
+use crate::{LimitSwitches, PlannerSettings, SafetyGate, StepPoint};
 use core::time::Duration;
 
 /// What the motors have really done.
@@ -15,6 +16,9 @@ pub(in super::super) struct Made {
     /// Steps made.
     pub(in super::super) at: StepPoint,
     pub(in super::super) gap: Gap,
+    /// Steps of a third motor made.
+    #[cfg(feature = "third-motor")]
+    pub(in super::super) z: i32,
     /// Whether these are all that have been given.
     pub(in super::super) stands: bool,
 }
@@ -44,6 +48,13 @@ impl Ahead {
         }
     }
 
+    /// The course in hand rises; z is driven as hard as it may be by so much along it, mm/s².
+    #[cfg(feature = "third-motor")]
+    pub(super) const fn rises(&mut self, of_z_mm_s2: f32) {
+        let bends = matches!(self.curve, Curve::Arc(_));
+        self.curve = Curve::Rising { of_z_mm_s2, bends };
+    }
+
     /// All that is planned has been given: whether the motors have yet to make it.
     pub(super) fn waits_for_motors(&mut self) -> bool {
         self.ended = self.made.is_some_and(|made| !made.stands);
@@ -63,9 +74,22 @@ impl<M: Modes> Motion<M> {
     /// From here on steps are given ahead of their time; the gate goes to who makes them.
     pub(in super::super) fn begin_ahead(&mut self) -> SafetyGate {
         let (at, gap) = self.stands_at();
-        self.ahead.made = Some(Made { at, gap, stands: true });
+        self.ahead.made = Some(Made {
+            at,
+            gap,
+            #[cfg(feature = "third-motor")]
+            z: self.z_steps().unwrap_or_default(),
+            stands: true,
+        });
         let gate = &self.gate;
         let mut own = SafetyGate::new(gate.limits(), gate.is_latched());
+        #[cfg(feature = "third-motor")]
+        {
+            own.set_z_limits(gate.z_limits());
+            if let Some(second) = self.settings.second {
+                own.set_second_limits(second.axis, gate.second_limits());
+            }
+        }
         own.emergency_stop(gate.is_button_pressed());
         core::mem::replace(&mut self.gate, own)
     }
@@ -109,12 +133,16 @@ impl<M: Modes> Motion<M> {
     }
 
     /// Takes that event: a step, or something else that is done at once.
-    pub(in super::super) fn take_planned(&mut self, link: &mut Link) -> Option<StepPair> {
+    pub(in super::super) fn take_planned(&mut self, link: &mut Link) -> Option<Makes> {
         let event = self.next.take()?.event;
         match event {
             // Whether a limit switch is in its way is known at its time, to the gate of who makes it.
-            MotorEvent::Step(step) if !self.gate.is_stopped() => return Some(step),
+            MotorEvent::Step(step) if !self.gate.is_stopped() => return Some(Makes::Pair(step)),
             MotorEvent::Step(_) => self.stop(Stop::Emergency, link),
+            #[cfg(feature = "third-motor")]
+            MotorEvent::StepZ(way) if !self.gate.is_stopped() => return Some(Makes::Z(way)),
+            #[cfg(feature = "third-motor")]
+            MotorEvent::StepZ(_) => self.stop(Stop::Emergency, link),
             _ => {
                 self.give(event, link);
             }
@@ -173,8 +201,10 @@ impl<M: Modes> Motion<M> {
         }
     }
 
-    pub(in super::super) const fn note_made(&mut self, made: Made) {
+    pub(in super::super) fn note_made(&mut self, made: Made) {
         self.ahead.made = Some(made);
+        #[cfg(feature = "third-motor")]
+        self.stand_at_z(made.z);
     }
 
     /// Whether it has just homed: the motors stand at the origin from here on.

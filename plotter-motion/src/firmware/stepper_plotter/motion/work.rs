@@ -106,6 +106,8 @@ impl<M: Modes> Motion<M> {
             }
             #[cfg(feature = "step-ahead")]
             self.ahead.note(&action);
+            #[cfg(feature = "third-motor")]
+            self.note_rise(&action);
             if let Action::Phase(phase) = action {
                 self.phase = Some((self.time_of(self.steps.tick()), phase));
             }

@@ -4,14 +4,15 @@ use super::super::squaring::{SquaringAxis, SquaringProgress, SquaringStatus};
 use super::super::z_axis::{ZHomingProgress, ZHomingStatus};
 use super::super::{Command, Drivers, Link, Report, Step, Stop};
 use super::{Motion, State};
-use crate::planner::{Keep as _, Modes};
+use crate::geom::single;
+use crate::planner::{Action, Keep as _, Modes, Shape};
 use crate::safety::{Blocked, EndSwitches, Pulse};
 use crate::seconds::has_come;
-use crate::{Axis, Direction, LimitSwitches, PlotOp};
+use crate::{Axis, Direction, LimitSwitches, PlotOp, Point};
 use core::time::Duration;
 
 /// Where the third axis is.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ZState {
     /// Steps really made, from the lowest place.
     position: i32,
@@ -21,14 +22,37 @@ pub(super) struct ZState {
     /// How many steps below the place where homing found it, it was believed to be.
     off_steps: Option<i32>,
     squaring: Option<SquaringProgress>,
+    /// Where the course in hand ends, and at which height, mm.
+    planned_at: Point,
+    planned_mm: f64,
+    /// In how much smaller units than millimetres it is told: from 1 on.
+    per_mm: f32,
     skew_steps: Option<i32>,
+}
+
+impl Default for ZState {
+    fn default() -> Self {
+        Self {
+            position: 0,
+            to_mm: None,
+            homing: None,
+            off_steps: None,
+            squaring: None,
+            planned_at: Point::ORIGIN,
+            planned_mm: 0.0,
+            per_mm: 1.0,
+            skew_steps: None,
+        }
+    }
 }
 
 impl<M: Modes> Motion<M> {
     /// Tells planner and step generator of the axis, and where it stands.
     pub(super) fn tell_z(&mut self) {
+        let at = self.position_mm();
         let (Some(z), Some(state)) = (self.settings.z, self.z.get_mut()) else { return };
-        state.to_mm = None;
+        (state.to_mm, state.per_mm) = (None, 1.0);
+        (state.planned_at, state.planned_mm) = (at, z.height_at(state.position));
         let told = self.planner.set_z_limits(&z.limits());
         debug_assert!(told.is_ok(), "the settings have been checked: {told:?}");
         if let Some(pen) = z.pen {
@@ -42,6 +66,59 @@ impl<M: Modes> Motion<M> {
     #[must_use]
     pub fn z_mm(&self) -> Option<f64> {
         self.settings.z.zip(self.z.get()).map(|(z, state)| z.height_at(state.position))
+    }
+
+    /// The steps really made, from the lowest place.
+    #[cfg(feature = "step-ahead")]
+    pub(in super::super) fn z_steps(&self) -> Option<i32> {
+        self.z.get().map(|state| state.position)
+    }
+
+    /// So many have really been made.
+    #[cfg(feature = "step-ahead")]
+    pub(super) fn stand_at_z(&mut self, steps: i32) {
+        if let Some(state) = self.z.get_mut() {
+            state.position = steps;
+        }
+    }
+
+    /// Notes how a course rises: in which units it is told, and what it can be braked with.
+    pub(super) fn note_rise(&mut self, action: &Action) {
+        let (Some(z), Some(state), Action::Course(course)) = (self.settings.z, self.z.get_mut(), action)
+        else {
+            return;
+        };
+        let from = core::mem::replace(&mut state.planned_at, course.to);
+        state.per_mm = 1.0;
+        let Some(to_mm) = course.to_z_mm else { return };
+        let by_mm = single(to_mm - core::mem::replace(&mut state.planned_mm, to_mm)).abs();
+        if by_mm <= 0.0 {
+            return;
+        }
+        let plane_mm = match course.shape {
+            Shape::Arc { centre, sweep_rad } => single(centre.distance(course.to)) * sweep_rad.abs(),
+            _ => single(from.distance(course.to)),
+        };
+        let length_mm = crate::root::root(plane_mm * plane_mm + by_mm * by_mm);
+        if self.planner.settings().jerk_mm_s3.is_some() {
+            state.per_mm = crate::extremes::greatest(1.0, course.length_mm / length_mm);
+        }
+        #[cfg(feature = "step-ahead")]
+        {
+            let of_z = single(z.accel_mm_s2) * length_mm / by_mm;
+            // In units in which it is planned with the acceleration of all others, of which turning has a
+            // part.
+            let in_units = state.per_mm > 1.0;
+            let of_all = crate::planner::HELIX_SHARE * single(self.planner.settings().accel_mm_s2);
+            self.ahead.rises(if in_units { of_all } else { of_z });
+        }
+        #[cfg(not(feature = "step-ahead"))]
+        let _ = z;
+    }
+
+    /// The true speed of one along the course in hand.
+    pub(super) fn true_speed(&self, speed_mm_s: f32) -> f32 {
+        self.z.get().map_or(speed_mm_s, |state| speed_mm_s / state.per_mm)
     }
 
     /// By how many steps the third axis stood higher than was believed, as its last homing has found.
