@@ -4,13 +4,20 @@ use crate::machine::{Moment, MostAccel, PathDeviation, SpeedAudit};
 use plotter_motion::kinematics::{Cartesian, Kinematics as _, MotorScale};
 use plotter_motion::{
     Pen, Planner, PlannerSettings, PlotOp, Point, StepGen, StepPair, StepPoint,
-    planner::{Action, PlanError},
-    stepgen::{MotorEvent, PlotTime, StepGenSettings, TimedEvent},
+    planner::{Action, Averaged, PlanError},
+    stepgen::{AveragedSteps, MotorEvent, PlotTime, StepGenSettings, TimedEvent},
     toolpath::chords,
 };
 
 /// Blocks of look-ahead: more than a controller has, less than what makes a difference.
 pub const BLOCKS: usize = 64;
+
+/// Ticks a second of the steps.
+const CLOCK_HZ: u32 = 1_000_000;
+
+/// Steps within the window of an average that have room: 80 ms of both motors at 100 mm/s and 1000 steps/mm,
+/// where 20,000 mm/s³ within 0.05 mm take 42 ms.
+const WINDOW_STEPS: usize = 1 << 14;
 
 /// How finely arcs are compared with what is drawn, mm.
 const CHORD_MM: f64 = 1e-4;
@@ -86,6 +93,8 @@ pub struct SteppedPlot {
     planner: Planner<BLOCKS>,
     kinematics: Cartesian,
     steps: StepGen<Cartesian>,
+    /// What averages the steps, where the jerk is limited as a vector.
+    averaged: Option<Box<AveragedSteps<WINDOW_STEPS>>>,
     deviation: PathDeviation,
     audit: SpeedAudit,
     figures: SteppedFigures,
@@ -115,11 +124,12 @@ impl SteppedPlot {
             _ => 2.0 * settings.allowance_mm,
         };
         let coarsest = motors[0].steps_per_mm.min(motors[1].steps_per_mm);
-        let timing = StepGenSettings { clock_hz: 1_000_000, ..timing };
+        let timing = StepGenSettings { clock_hz: CLOCK_HZ, ..timing };
         Ok(Self {
             planner,
             kinematics,
             steps: StepGen::new(kinematics, timing),
+            averaged: None,
             deviation: PathDeviation::new(reach_mm.max(2.0 / coarsest)),
             audit: SpeedAudit::new(
                 Point::ORIGIN,
@@ -133,6 +143,28 @@ impl SteppedPlot {
             pen: Pen::Up,
             last_tick: 0,
         })
+    }
+
+    /// The same of a motion that is averaged, so that its jerk is limited as a vector.
+    ///
+    /// # Errors
+    ///
+    /// As with [`Self::new`]; more steps within the window than it has room for.
+    pub fn averaged(of: Averaged, timing: StepGenSettings, motors: [MotorScale; 2]) -> Result<Self, String> {
+        let Averaged { settings, window_s } = of;
+        let speed_mm_s = settings.speed_mm_s.max(settings.travel_speed_mm_s);
+        let steps = window_s * speed_mm_s * (motors[0].steps_per_mm + motors[1].steps_per_mm);
+        #[expect(clippy::cast_precision_loss, reason = "a power of two")]
+        let most = WINDOW_STEPS as f64;
+        if steps > most {
+            return Err(format!(
+                "averaging over {window_s:.3} s takes {steps:.0} steps at {speed_mm_s} mm/s, and {most} have room: allow \
+                 more jerk, a lower speed, or fewer steps to the millimetre"
+            ));
+        }
+        let averaged = AveragedSteps::new(of.window_ticks(CLOCK_HZ));
+        let plot = Self::new(settings, timing, motors)?;
+        Ok(Self { averaged: Some(Box::new(averaged)), ..plot })
     }
 
     /// Takes the next operation; tells what happens meanwhile.
@@ -179,7 +211,12 @@ impl SteppedPlot {
     /// Seconds since the machine began.
     #[must_use]
     pub fn now_s(&self) -> f64 {
-        seconds(self.steps.tick())
+        seconds(self.tick())
+    }
+
+    /// When what has been planned is over.
+    fn tick(&self) -> u64 {
+        self.steps.tick() + self.averaged.as_ref().map_or(0, |averaged| averaged.delay_ticks())
     }
 
     /// Nothing more comes: the machine goes on until it stands, and lifts its pen.
@@ -192,8 +229,14 @@ impl SteppedPlot {
         self.planner.finish()?;
         self.deviation.lift();
         while self.advance(each) {}
+        // Without a pen that is lifted at the end the motors are still on their way.
+        while let Some(event) = self.averaged.as_mut().and_then(|averaged| averaged.rest()) {
+            self.happens(event, each);
+        }
         let pen = self.pen;
-        self.audit.finish(self.steps.tick(), |moment| each(Happening::Moment(moment, pen)));
+        let tick = self.tick().max(self.last_tick);
+        self.figures.motion_s += seconds(tick - self.tick());
+        self.audit.finish(tick, |moment| each(Happening::Moment(moment, pen)));
         let (from_drawing_mm, from_steps_mm) = self.deviation.most_mm();
         Ok(SteppedFigures {
             max_speed_mm_s: self.audit.most_speed_mm_s(),
@@ -201,7 +244,7 @@ impl SteppedPlot {
             accel_window_ms: self.audit.window_ms(),
             from_drawing_mm,
             from_steps_mm,
-            total_s: seconds(self.steps.tick()),
+            total_s: seconds(tick),
             ..self.figures
         })
     }
@@ -218,7 +261,9 @@ impl SteppedPlot {
                     Pen::Up => figures.travel_mm += f64::from(course.length_mm),
                     Pen::Down => figures.draw_mm += f64::from(course.length_mm),
                 }
-                self.put(course.pen, each);
+                if self.averaged.is_none() {
+                    self.put(course.pen, each);
+                }
                 false
             }
             Action::Phase(_) => true,
@@ -227,7 +272,9 @@ impl SteppedPlot {
                 false
             }
             _ => {
-                self.put(Pen::Up, each);
+                if self.averaged.is_none() {
+                    self.put(Pen::Up, each);
+                }
                 false
             }
         };
@@ -235,19 +282,36 @@ impl SteppedPlot {
         if self.steps.push(action).is_err() {
             return false;
         }
-        while let Some(TimedEvent { tick, event }) = self.steps.next_event() {
-            self.last_tick = tick;
-            match event {
-                MotorEvent::Step(StepPair { x, y }) => self.step(tick, x, y, each),
-                MotorEvent::SelectPen(pen) => each(Happening::SelectPen(pen)),
-                MotorEvent::NewPage => each(Happening::NewPage),
-                _ => {}
+        while let Some(event) = self.steps.next_event() {
+            let Some(averaged) = &mut self.averaged else {
+                self.happens(event, each);
+                continue;
+            };
+            let later = averaged.delay_ticks();
+            if averaged.push(event).is_err() {
+                return false;
             }
+            while let Some(event) = self.averaged.as_mut().and_then(|averaged| averaged.next_event()) {
+                self.happens(event, each);
+            }
+            let now_later = self.averaged.as_ref().map_or(later, |averaged| averaged.delay_ticks());
+            self.figures.motion_s += seconds(now_later - later);
         }
         if is_motion {
             self.figures.motion_s += seconds(self.steps.tick() - before);
         }
         true
+    }
+
+    fn happens(&mut self, TimedEvent { tick, event }: TimedEvent, each: &mut impl FnMut(Happening)) {
+        self.last_tick = tick;
+        match event {
+            MotorEvent::Step(StepPair { x, y }) => self.step(tick, x, y, each),
+            MotorEvent::SelectPen(pen) => each(Happening::SelectPen(pen)),
+            MotorEvent::NewPage => each(Happening::NewPage),
+            MotorEvent::Pen(pen) if self.averaged.is_some() => self.put(pen, each),
+            _ => {}
+        }
     }
 
     fn put(&mut self, pen: Pen, each: &mut impl FnMut(Happening)) {
