@@ -2,7 +2,7 @@
 
 /// Trees over numbered things: those that belong together share a root (B. A. Galler and M. J. Fischer, "An
 /// improved equivalence algorithm", 1964).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct DisjointSets(Vec<usize>);
 
 impl DisjointSets {

@@ -4,13 +4,20 @@ use crate::machine::{Moment, MostAccel, PathDeviation, SpeedAudit};
 use plotter_motion::kinematics::{Cartesian, Kinematics as _, MotorScale};
 use plotter_motion::{
     Pen, Planner, PlannerSettings, PlotOp, Point, StepGen, StepPair, StepPoint,
-    planner::{Action, PlanError},
-    stepgen::{MotorEvent, PlotTime, StepGenSettings, TimedEvent},
+    planner::{Action, Averaged, PlanError},
+    stepgen::{AveragedSteps, MotorEvent, PlotTime, StepGenSettings, TimedEvent},
     toolpath::chords,
 };
 
 /// Blocks of look-ahead: four times as many as Grbl has on an Arduino (16).
 pub const BLOCKS: usize = 64;
+
+/// Ticks a second of the steps, so that a tick is 1 us.
+const CLOCK_HZ: u32 = 1_000_000;
+
+/// Steps within the window of an average that have room: 80 ms of both motors at 100 mm/s and 1000 steps/mm,
+/// where 20,000 mm/s³ within 0.05 mm take 42 ms.
+const WINDOW_STEPS: usize = 1 << 14;
 
 /// How far chords may be from the arcs in whose place steps are compared with them, mm: a hundredth of a step
 /// at 100 steps/mm.
@@ -97,6 +104,8 @@ pub struct SteppedPlot {
     planner: Planner<BLOCKS>,
     kinematics: Cartesian,
     steps: StepGen<Cartesian>,
+    /// What averages the steps, where the jerk is limited as a vector.
+    averaged: Option<Box<AveragedSteps<WINDOW_STEPS>>>,
     deviation: PathDeviation,
     audit: SpeedAudit,
     figures: SteppedFigures,
@@ -106,6 +115,8 @@ pub struct SteppedPlot {
     at: StepPoint,
     /// The pen after the last step.
     pen: Pen,
+    /// Tick of the last event.
+    last_tick: u64,
 }
 
 impl SteppedPlot {
@@ -128,11 +139,12 @@ impl SteppedPlot {
             _ => 2.0 * settings.allowance_mm,
         };
         let coarsest = motors[0].steps_per_mm.min(motors[1].steps_per_mm);
-        let timing = StepGenSettings { clock_hz: 1_000_000, ..timing }; // so that a tick is 1 us
+        let timing = StepGenSettings { clock_hz: CLOCK_HZ, ..timing };
         Ok(Self {
             planner,
             kinematics,
             steps: StepGen::new(kinematics, timing),
+            averaged: None,
             deviation: PathDeviation::new(reach_mm.max(2.0 / coarsest)),
             audit: SpeedAudit::new(
                 Point::ORIGIN,
@@ -144,7 +156,30 @@ impl SteppedPlot {
             drawn_to: Point::ORIGIN,
             at: StepPoint::default(),
             pen: Pen::Up,
+            last_tick: 0,
         })
+    }
+
+    /// The same of a motion that is averaged, so that its jerk is limited as a vector.
+    ///
+    /// # Errors
+    ///
+    /// As with [`Self::new`]; more steps within the window than it has room for.
+    pub fn averaged(of: Averaged, timing: StepGenSettings, motors: [MotorScale; 2]) -> Result<Self, String> {
+        let Averaged { settings, window_s } = of;
+        let speed_mm_s = settings.speed_mm_s.max(settings.travel_speed_mm_s);
+        let steps = window_s * speed_mm_s * (motors[0].steps_per_mm + motors[1].steps_per_mm);
+        #[expect(clippy::cast_precision_loss, reason = "a power of two")]
+        let most = WINDOW_STEPS as f64;
+        if steps > most {
+            return Err(format!(
+                "averaging over {window_s:.3} s takes {steps:.0} steps at {speed_mm_s} mm/s, and {most} have room: allow \
+                 more jerk, a lower speed, or fewer steps to the millimetre"
+            ));
+        }
+        let averaged = AveragedSteps::new(of.window_ticks(CLOCK_HZ));
+        let plot = Self::new(settings, timing, motors)?;
+        Ok(Self { averaged: Some(Box::new(averaged)), ..plot })
     }
 
     /// Plans the next operation; meanwhile hands every event of the plot to `on_event`.
@@ -191,7 +226,12 @@ impl SteppedPlot {
     /// Seconds since the machine began.
     #[must_use]
     pub fn now_s(&self) -> f64 {
-        seconds(self.steps.tick())
+        seconds(self.tick())
+    }
+
+    /// When what has been planned is over.
+    fn tick(&self) -> u64 {
+        self.steps.tick() + self.averaged.as_ref().map_or(0, |averaged| averaged.delay_ticks())
     }
 
     /// Runs until the machine stands, lifts the pen, and returns the figures of the plot.
@@ -204,8 +244,14 @@ impl SteppedPlot {
         self.planner.finish()?;
         self.deviation.lift();
         while self.advance(on_event) {}
+        // Without a pen that is lifted at the end the motors are still on their way.
+        while let Some(event) = self.averaged.as_mut().and_then(|averaged| averaged.rest()) {
+            self.happens(event, on_event);
+        }
         let pen = self.pen;
-        self.audit.finish(self.steps.tick(), |moment| on_event(PlotEvent::Moment(moment, pen)));
+        let tick = self.tick().max(self.last_tick);
+        self.figures.motion_s += seconds(tick - self.tick());
+        self.audit.finish(tick, |moment| on_event(PlotEvent::Moment(moment, pen)));
         let (max_steps_off_drawing_mm, max_drawing_off_steps_mm) = self.deviation.most_mm();
         Ok(SteppedFigures {
             max_speed_mm_s: self.audit.most_speed_mm_s(),
@@ -213,7 +259,7 @@ impl SteppedPlot {
             accel_window_ms: self.audit.window_ms(),
             max_steps_off_drawing_mm,
             max_drawing_off_steps_mm,
-            total_s: seconds(self.steps.tick()),
+            total_s: seconds(tick),
             ..self.figures
         })
     }
@@ -230,7 +276,9 @@ impl SteppedPlot {
                     Pen::Up => figures.travel_mm += f64::from(course.length_mm),
                     Pen::Down => figures.draw_mm += f64::from(course.length_mm),
                 }
-                self.move_pen(course.pen, on_event);
+                if self.averaged.is_none() {
+                    self.move_pen(course.pen, on_event);
+                }
                 false
             }
             Action::Phase(_) => true,
@@ -240,7 +288,9 @@ impl SteppedPlot {
             }
             // Another pen, another sheet: the planner has lifted the pen for them.
             _ => {
-                self.move_pen(Pen::Up, on_event);
+                if self.averaged.is_none() {
+                    self.move_pen(Pen::Up, on_event);
+                }
                 false
             }
         };
@@ -248,18 +298,36 @@ impl SteppedPlot {
         // It refuses an action only while events of the one before are left; the loop below takes them all.
         let pushed = self.steps.push(action);
         debug_assert!(pushed.is_ok(), "{pushed:?}");
-        while let Some(TimedEvent { tick, event }) = self.steps.next_event() {
-            match event {
-                MotorEvent::Step(StepPair { x, y }) => self.step(tick, x, y, on_event),
-                MotorEvent::SelectPen(pen) => on_event(PlotEvent::SelectPen(pen)),
-                MotorEvent::NewPage => on_event(PlotEvent::NewPage),
-                _ => {}
+        while let Some(event) = self.steps.next_event() {
+            let Some(averaged) = &mut self.averaged else {
+                self.happens(event, on_event);
+                continue;
+            };
+            let later = averaged.delay_ticks();
+            if averaged.push(event).is_err() {
+                return false;
             }
+            while let Some(event) = self.averaged.as_mut().and_then(|averaged| averaged.next_event()) {
+                self.happens(event, on_event);
+            }
+            let now_later = self.averaged.as_ref().map_or(later, |averaged| averaged.delay_ticks());
+            self.figures.motion_s += seconds(now_later - later);
         }
         if is_motion {
             self.figures.motion_s += seconds(self.steps.tick() - before);
         }
         true
+    }
+
+    fn happens(&mut self, TimedEvent { tick, event }: TimedEvent, on_event: &mut impl FnMut(PlotEvent)) {
+        self.last_tick = tick;
+        match event {
+            MotorEvent::Step(StepPair { x, y }) => self.step(tick, x, y, on_event),
+            MotorEvent::SelectPen(pen) => on_event(PlotEvent::SelectPen(pen)),
+            MotorEvent::NewPage => on_event(PlotEvent::NewPage),
+            MotorEvent::Pen(pen) if self.averaged.is_some() => self.move_pen(pen, on_event),
+            _ => {}
+        }
     }
 
     fn move_pen(&mut self, pen: Pen, on_event: &mut impl FnMut(PlotEvent)) {

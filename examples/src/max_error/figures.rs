@@ -4,13 +4,16 @@ use super::command::MaxErrorCommand;
 use super::plan::{Plan, Refusal, SAFETY};
 use super::scan::Scan;
 use crate::max_error::{FollowedPath, TruePath};
-use crate::shared::{assumed, write_file};
+use crate::shared::{assumed, told_insides, write_file};
 use plotter_motion::{
     Machine,
     budget::{Budget, BudgetError, BudgetPart},
 };
 use plotter_replay::{Canvas, CanvasStyle, draw::Layer};
-use plotter_vector::{ink::Despeckled, report::FollowedLines};
+use plotter_vector::{
+    ink::Despeckled,
+    report::{FollowedLines, Spots},
+};
 use serde_json::json;
 
 /// What was asked, promised and measured.
@@ -25,6 +28,8 @@ pub(super) struct Report<'a> {
     /// Line by line.
     pub(super) followed: FollowedLines,
     pub(super) dirt: Despeckled,
+    /// Ink of areas that outlines do not draw.
+    insides: Spots,
     /// What was taken from the file or assumed.
     told: Vec<(&'static str, String)>,
 }
@@ -44,6 +49,7 @@ impl<'a> Report<'a> {
         Self {
             followed: scan.followed(&drawn, args.max_error_mm),
             dirt: scan.dirt,
+            insides: scan.insides.clone(),
             told: scan.told.clone(),
             args,
             name: machine.config().name.to_string(),
@@ -101,6 +107,7 @@ impl<'a> Report<'a> {
                 "px": self.dirt.removed_px,
                 "largest_px": self.dirt.largest_removed_px,
             },
+            "areas": &self.insides,
             "lines": {
                 "of_scan": self.followed.lines,
                 "followed": self.followed.followed(),
@@ -144,10 +151,14 @@ impl<'a> Report<'a> {
             ("share of the speed", format!("{:.0} %", 100.0 * budget.speed_share)),
             ("drawing time", format!("{:.1} s", self.duration_s)),
         ];
-        let dirt = self.dirt().map(|dirt| format!("{dirt}\n"));
+        let left_out: String = told_insides(&self.insides)
+            .into_iter()
+            .chain(self.dirt())
+            .map(|told| format!("{told}\n"))
+            .collect();
         let told = self.told.iter().cloned();
         told.chain(rows).map(|(name, value)| format!("{name:28} {value:>22}\n")).collect::<String>()
-            + dirt.as_deref().unwrap_or("")
+            + &left_out
     }
 }
 

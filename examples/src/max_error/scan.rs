@@ -9,7 +9,7 @@ use plotter_motion::{
 use plotter_vector::{
     Bitmap, Drawing, FileRows, Gray, PxPoint, Scale, Vectorized,
     ink::Despeckled,
-    report::{FollowedLines, InkDistance, followed_lines},
+    report::{FollowedLines, InkDistance, Spots, followed_lines},
 };
 use std::io::Cursor;
 use std::path::Path;
@@ -29,6 +29,8 @@ pub(super) struct Scan {
     pub(super) ink: Bitmap,
     pub(super) all_ink: Bitmap,
     pub(super) dirt: Despeckled,
+    /// Ink of areas that outlines do not draw.
+    pub(super) insides: Spots,
     pub(super) scale: Scale,
     /// What was taken from the file or assumed.
     pub(super) told: Vec<(&'static str, String)>,
@@ -64,13 +66,13 @@ impl Scan {
         let vectorize = VectorizeConfig { pieces: PiecesChoice::Lines, ..machine.config().vectorize };
         let settings = vectorizer(&vectorize, scale.mm_per_px())?;
         let (ink, (all_ink, _)) = (settings.ink(&picture), settings.threshold.apply(&picture));
-        let (reference, dirt) = (Drawing::default(), Despeckled::default());
-        let mut scan = Self { picture, ink, all_ink, dirt, scale, told, vectorize, reference };
-        let Vectorized { drawing, removed, look, split, doubt, .. } =
+        let (reference, dirt, insides) = (Drawing::default(), Despeckled::default(), Spots::default());
+        let mut scan = Self { picture, ink, all_ink, dirt, insides, scale, told, vectorize, reference };
+        let Vectorized { drawing, removed, insides, look, split, doubt, .. } =
             scan.traced(REFERENCE_PX).map_err(|error| at(path, &error))?;
         doubted(doubt, IN_MACHINE_FILE).map_err(|error| at(path, &error))?;
         scan.told.extend(told_ink(look, split));
-        (scan.reference, scan.dirt) = (drawing, removed);
+        (scan.reference, scan.dirt, scan.insides) = (drawing, removed, insides);
         if scan.ink.count() == 0 {
             return Err(at(path, &"there is no ink on it"));
         }

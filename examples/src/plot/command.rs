@@ -16,7 +16,11 @@ use plotter_motion::{
     toolpath::{OutOfReach, targets},
 };
 use plotter_replay::compare::Ways;
-use plotter_vector::{Algorithm, Drawing, Scale, TracedSheet, Vectorizer, picture::FileNotes, trace::Prefer};
+use plotter_vector::{
+    Algorithm, Drawing, Scale, TracedSheet, Vectorizer,
+    picture::FileNotes,
+    trace::{Prefer, SheetErrors},
+};
 use std::fmt::Write as _;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -133,8 +137,8 @@ pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
     pictures.write(&args.out)?;
     let summary = Summary {
         drawing: &traced.drawing,
-        error: &errors.report,
-        beyond: errors.beyond,
+        errors: &errors,
+        kept: (vectorizer.algorithm == Algorithm::Ours).then(|| is_kept(&vectorizer, &traced, &errors)),
         dirt: traced.removed,
         outcome: &outcome,
         plotted: plotter.contour_error(Ways::Drawn),
@@ -172,6 +176,13 @@ pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
     }
     lost_ink(&vectorizer, &errors, traced.pen_px, traced.look.is_some())
         .map_err(|error| at(picture_path(args), &error))
+}
+
+/// Whether all ink is drawn within the greatest error, and nothing else.
+fn is_kept(vectorizer: &Vectorizer, traced: &TracedSheet, errors: &SheetErrors) -> bool {
+    traced.removed.removed_marks == 0
+        && traced.look.is_none_or(|look| look.left_out == 0)
+        && errors.are_within(vectorizer.ours.tolerance_px)
 }
 
 /// Moves of the machine; the files of the drawing are written meanwhile.

@@ -13,6 +13,7 @@ mod picture_size;
 mod report;
 mod telling;
 mod told_ink;
+mod told_spots;
 mod vectorize_settings;
 mod work_shown;
 
@@ -30,5 +31,6 @@ pub(crate) use report::escaped;
 pub use report::{Figure, html_page};
 pub use telling::Telling;
 pub use told_ink::{assumed, told_ink};
+pub(crate) use told_spots::{told_bare, told_insides};
 pub use vectorize_settings::vectorizer;
 pub use work_shown::WorkShown;

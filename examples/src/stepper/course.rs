@@ -47,10 +47,17 @@ pub(super) fn plot(arguments: &StepperCommand) -> Result<(), String> {
         check_drawn(&drawing, &extent, &said)?;
         extent.warn(&mut said);
         let figures = PlotFigures::Estimated(&time);
-        let report = SteppedReport::new(&drawing, &machine, &settings, motors, figures, &extent, &said);
+        let report =
+            SteppedReport::new(&drawing, &machine, (&settings, None), motors, figures, &extent, &said);
         return tell(arguments, &drawing, &report, &said);
     }
-    let mut plot = SteppedPlot::new(settings, timing, motors)?;
+    let mut plot = match arguments.jerk_vector {
+        None => SteppedPlot::new(settings, timing, motors)?,
+        Some(jerk_mm_s3) => {
+            let averaged = settings.averaged(jerk_mm_s3).map_err(|error| error.to_string())?;
+            SteppedPlot::averaged(averaged, timing, motors)?
+        }
+    };
     let mut writers = Writers {
         preview: arguments.svg.is_some().then(|| SteppedPreview::new(Point::ORIGIN, 1.0 / finest)),
         chart: arguments.speed_plot.is_some().then(SpeedChart::default),
@@ -80,7 +87,8 @@ pub(super) fn plot(arguments: &StepperCommand) -> Result<(), String> {
         steps.finish()?;
     }
     let figures = PlotFigures::Stepped(&figures);
-    let report = SteppedReport::new(&drawing, &machine, &settings, motors, figures, &extent, &said);
+    let limits = (&settings, arguments.jerk_vector);
+    let report = SteppedReport::new(&drawing, &machine, limits, motors, figures, &extent, &said);
     tell(arguments, &drawing, &report, &said)
 }
 
@@ -160,7 +168,7 @@ pub(super) fn machine(
     }
     settings.accel_mm_s2 = arguments.accel.unwrap_or(settings.accel_mm_s2);
     settings.junction_deviation_mm = arguments.junction_deviation.unwrap_or(settings.junction_deviation_mm);
-    if arguments.s_curve || config.planner.s_curve {
+    if arguments.s_curve || config.planner.s_curve && arguments.jerk_vector.is_none() {
         settings.jerk_mm_s3 = Some(arguments.jerk.unwrap_or(config.planner.jerk_mm_s3));
     } else if arguments.jerk.is_some() {
         said.push(Diagnostic::new(Severity::Notice, "--jerk counts with --s-curve only".into()));

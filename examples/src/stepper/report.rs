@@ -89,17 +89,20 @@ struct Limits {
     speed_mm_s: f64,
     travel_speed_mm_s: f64,
     accel_mm_s2: f64,
+    /// Along the path.
     jerk_mm_s3: Option<f64>,
+    /// As a vector.
+    jerk_vector_mm_s3: Option<f64>,
     junction_deviation_mm: f64,
 }
 
 impl SteppedReport {
-    /// The figures of a plot with these settings and motors.
+    /// The figures of a plot with these settings, this limit of the jerk as a vector, and these motors.
     #[must_use]
     pub fn new(
         drawing: &DrawingFile,
         machine: &Machine,
-        settings: &PlannerSettings,
+        (settings, jerk_vector_mm_s3): (&PlannerSettings, Option<f64>),
         motors: [MotorScale; 2],
         figures: PlotFigures<'_>,
         extent: &DrawnExtent,
@@ -129,6 +132,7 @@ impl SteppedReport {
                 travel_speed_mm_s: settings.travel_speed_mm_s,
                 accel_mm_s2: settings.accel_mm_s2,
                 jerk_mm_s3: settings.jerk_mm_s3,
+                jerk_vector_mm_s3,
                 junction_deviation_mm: settings.junction_deviation_mm,
             },
             steps_per_mm: motors.map(|motor| motor.steps_per_mm),
@@ -162,6 +166,9 @@ impl SteppedReport {
             let _ = write!(out, " give or take {} mm", (allowance_mm * 1e4).round() / 1e4);
         }
         out.push_str(if self.s_curve { ", s-curve" } else { "" });
+        if let Some(jerk_mm_s3) = self.limits.jerk_vector_mm_s3 {
+            let _ = write!(out, ", averaged to {jerk_mm_s3} mm/s³");
+        }
         out.push_str(if self.estimated {
             ", estimated without steps
 "

@@ -2,19 +2,15 @@
 
 use super::settings::Settings;
 use super::traced::Traced;
-use crate::shared::{Paper, PaperReport, PictureSize, assumed, told_notes};
+use crate::shared::{Paper, PaperReport, PictureSize, assumed, told_bare, told_insides, told_notes};
 use plotter_vector::{
     Algorithm, Drawing, ErrorReport,
     picture::{FileNotes, Ground},
-    report::Bin,
+    report::{Bin, Spots},
     trace::SheetErrors,
 };
 use serde::Serialize;
 use std::fmt::Write as _;
-
-/// Part of a pixel that a raster leaves open: the border of ink passes anywhere between the middles of two
-/// pixels.
-const RASTER_PX: f64 = 0.5;
 
 /// The figures of a tracing.
 #[derive(Debug, Serialize)]
@@ -42,9 +38,13 @@ pub(super) struct Report<'a> {
     /// What the pens draw beside the ink.
     beyond_ink: Option<BeyondReport>,
     /// Whether all ink is drawn within the greatest error, and nothing else: no ink lies farther from the
-    /// strokes, nothing drawn farther from the ink than that or the half pixel that the raster leaves open,
-    /// and nothing was taken for dirt.
+    /// strokes, none inside of an area is left out, nothing drawn lies farther from the ink than that or the
+    /// half pixel that the raster leaves open, and nothing was taken for dirt.
     kept: Option<bool>,
+    /// Ink that lies farther from the strokes than the greatest error.
+    bare: Option<Spots>,
+    /// Ink inside of areas that the pen does not draw.
+    areas: Option<Spots>,
     dirt: Dirt,
     pen_down_px: f64,
     pen_up_px: f64,
@@ -81,11 +81,12 @@ impl<'a> Report<'a> {
                 at: beyond.worst.map(|at| [at.x, at.y]),
             }),
             kept: traced.errors.as_ref().filter(|_| ours).map(|errors| {
-                let tolerance_px = settings.vectorizer.ours.tolerance_px;
                 traced.removed.removed_marks == 0
-                    && errors.report.max_px <= tolerance_px
-                    && errors.beyond.max_px <= tolerance_px.max(RASTER_PX)
+                    && traced.left_out == 0
+                    && errors.are_within(settings.vectorizer.ours.tolerance_px)
             }),
+            bare: traced.errors.as_ref().filter(|_| ours).map(|errors| errors.bare.clone()),
+            areas: traced.errors.as_ref().filter(|_| ours).map(|errors| errors.insides.clone()),
             dirt: Dirt {
                 marks: traced.removed.removed_marks,
                 px: traced.removed.removed_px,
@@ -208,6 +209,8 @@ pub(super) fn table(title: &str, report: &Report<'_>, megapixels: f64, circled: 
         ("", (megapixels >= 1.0).then(|| format!("{:.2} ms a megapixel", report.time_ms / megapixels))),
         ("memory", Some(rss)),
         ("circled", circled),
+        ("bare", report.bare.as_ref().and_then(told_bare)),
+        ("areas", report.areas.as_ref().and_then(told_insides)),
         ("dirt", dirt_of(report)),
     ];
     let mut out = format!("{title}\n");

@@ -55,6 +55,8 @@ pub(super) struct Traced {
     pub(super) errors: Option<SheetErrors>,
     /// What was taken for dirt.
     pub(super) removed: Despeckled,
+    /// Specks that were left out before, of a picture that no single level tells.
+    pub(super) left_out: usize,
     pub(super) palette: Palette,
     /// Width of the lines, px; unknown where pens were told apart, and without lines.
     pub(super) pen_px: Option<u32>,
@@ -163,6 +165,7 @@ pub(super) fn by_rows<R: Read + Seek>(
         drawing: sheet.drawing,
         errors: sheet.errors,
         removed: sheet.removed,
+        left_out: sheet.look.map_or(0, |look| look.left_out),
         doubt: sheet.doubt,
         palette: Palette::default(),
         pen_px: sheet.pen_px,
@@ -249,14 +252,20 @@ pub(super) fn in_colour(
     let found = found.map_err(|error| error.to_string())?;
     let time = start.elapsed();
     let drawing = found.traced.drawing;
-    let errors = SheetErrors { report: found.traced.error, worst: found.worst, beyond: found.traced.beyond };
-    let errors = (!arguments.no_errors).then_some(errors);
+    let errors = (!arguments.no_errors).then_some(SheetErrors {
+        report: found.traced.error,
+        worst: found.worst,
+        beyond: found.traced.beyond,
+        bare: found.traced.bare,
+        insides: found.traced.insides,
+    });
     let picture = settings.overlay.is_some().then_some(Picture::Colour(colour));
     let widest_px = found.inks.iter().filter_map(pen_width_px).max();
     let (removed, doubt) = (found.traced.removed, found.traced.doubt);
     Ok(Traced {
         errors,
         removed,
+        left_out: 0,
         doubt,
         palette: found.palette,
         pen_px: None,

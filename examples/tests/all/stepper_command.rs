@@ -103,6 +103,74 @@ fn rounded_corners_are_faster_and_within_the_tolerance() {
 }
 
 #[test]
+fn the_jerk_is_limited_as_a_vector_where_that_is_asked_for() {
+    let folder = Folder::new();
+    let square = folder.write(
+        "square.txt",
+        "PD, 00800, 00000\nPD, 00800, 00800\nPD, 00000, 00800\nPU, 02000, 02000\nPD, 02400, 02000\n",
+    );
+    let (steps, plain_steps) = (folder.file("steps.txt"), folder.file("plain.txt"));
+    let measured = [&MEASURED[..7], &["--steps-per-mm", "1000", "--tolerance-mm", "0.05"]].concat();
+    let options = [&[square.as_str()][..], &measured].concat();
+    let plain = folder.stepper_report(&[&options[..], &["--steps", &plain_steps]].concat());
+    let limit = ["--jerk-vector", "20000", "--steps", &steps];
+    let averaged = folder.stepper_report(&[&options[..], &limit].concat());
+    assert_eq!(averaged["limits"]["jerk_vector_mm_s3"], 20_000.0);
+    assert_eq!(averaged["strokes"], plain["strokes"]);
+    assert!(number(&averaged, "max_deviation_mm") <= 0.05 + 2.0 / 1000.0, "{averaged}");
+    let ratio = number(&averaged, "time_s") / number(&plain, "time_s");
+    assert!((1.1..2.0).contains(&ratio), "{ratio}");
+    // Both end in the same place, and the jerk, by differences of places 12 ms apart, is what was asked for.
+    let (end, jerk) = steps_seen(&steps);
+    let (plain_end, plain_jerk) = steps_seen(&plain_steps);
+    assert_eq!(end, plain_end);
+    assert!(jerk <= 1.1 * 20_000.0 && plain_jerk > 2.0 * 20_000.0, "{jerk}, {plain_jerk} mm/s³");
+    // Where a travel is the last thing the motors go to its end as well, and all is as slow there.
+    let home = folder.write("home.txt", "PD, 00800, 00000\nPU, 00000, 00000\n");
+    let options = [&[home.as_str()][..], &measured].concat();
+    let travelled = folder.stepper_report(&[&options[..], &limit].concat());
+    let (end, jerk) = steps_seen(&steps);
+    assert!(end == [0, 0] && jerk <= 1.1 * 20_000.0, "{end:?}, {jerk} mm/s³");
+    assert!(number(&travelled, "max_accel_mm_s2") <= 1.1 * 416.0, "{travelled}");
+    // A corner of the exact mode is a jump of the velocity: no jerk is limited there.
+    let exact = [&[square.as_str(), "--mode", "exact"][..], &["--jerk-vector", "20000"]].concat();
+    let said = complaint("stepper", &exact);
+    assert!(said.contains("the jerk as a vector can be limited within a tolerance only"), "{said}");
+    // Hours of motion have no room.
+    let much = [&options[..], &["--jerk-vector", "1"]].concat();
+    let said = complaint("stepper", &much);
+    assert!(said.contains("allow more jerk"), "{said}");
+}
+
+/// Where the steps of a file at 1000 steps/mm end, and the greatest jerk as a vector over 12 ms, mm/s³.
+fn steps_seen(file: &str) -> ([i32; 2], f64) {
+    const MS: usize = 1000;
+    let (mut at, mut places, mut now) = ([0_i32; 2], Vec::new(), 0);
+    let mut sum = [0.0; 2];
+    for line in std::fs::read_to_string(file).unwrap().lines().filter(|line| !line.starts_with('#')) {
+        let number: Vec<i64> = line.split_whitespace().map(|word| word.parse().unwrap()).collect();
+        while now < usize::try_from(number[0]).unwrap() {
+            (sum[0], sum[1]) = (sum[0] + f64::from(at[0]), sum[1] + f64::from(at[1]));
+            now += 1;
+            if now % MS == 0 {
+                places.push(sum.map(|sum| sum / 1000.0 / 1000.0));
+                sum = [0.0; 2];
+            }
+        }
+        at[0] += i32::try_from(number[1]).unwrap();
+        at[1] += i32::try_from(number[2]).unwrap();
+    }
+    let jerk = |places: &[[f64; 2]]| {
+        let third = |axis: usize| {
+            let of = |index: usize| places[index][axis];
+            (of(36) - 3.0 * of(24) + 3.0 * of(12) - of(0)) / 0.012_f64.powi(3)
+        };
+        third(0).hypot(third(1))
+    };
+    (at, places.windows(37).map(jerk).fold(0.0, f64::max))
+}
+
+#[test]
 fn what_lies_outside_is_told_with_its_line() {
     let folder = Folder::new();
     let text = folder.write("large.plt", "IN;PU0,0;\nPD400,0;\nPD400,-40;\nPD800,0;\nPD1200,0;\nPU;");

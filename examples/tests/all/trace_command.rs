@@ -29,6 +29,8 @@ fn all_files_are_written_and_the_report_has_all_keys() {
         "histogram",
         "beyond_ink",
         "kept",
+        "bare",
+        "areas",
         "dirt",
         "pen_down_px",
         "pen_up_px",
@@ -800,4 +802,60 @@ fn dirt_that_is_left_out_is_told() {
     assert!(said.contains("9 marks are left out, 225 px of ink (the largest 25 px)"), "{said}");
     let output = run_example("max_error", &[&[picture.as_str(), "--allow-dirt"][..], &plan].concat());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn ink_inside_of_areas_that_is_left_out_is_told_by_every_tool() {
+    let folder = Folder::new();
+    // A square of 100 px, and a line 4 px wide.
+    let is_ink = |x: u32, y: u32| {
+        (20..120).contains(&x) && (20..120).contains(&y) || (20..280).contains(&x) && (150..154).contains(&y)
+    };
+    let levels = (0..200).flat_map(|y| (0..300).map(move |x| if is_ink(x, y) { 0 } else { 255 }));
+    let picture = folder.write("area.pgm", [b"P5 300 200 255\n".to_vec(), levels.collect()].concat());
+    let report = folder.trace_report(&picture, &[]);
+    assert_eq!((&report["areas"]["number"], &report["kept"]), (&1.into(), &false.into()), "{report}");
+    let told = report["areas"]["pixels"].as_u64().unwrap();
+    assert!((8_000..10_000).contains(&told), "{told} px");
+    assert_eq!(report["areas"]["largest"][0]["pixels"], told);
+    let said = String::from_utf8(run_example("trace", &[&picture]).stdout).unwrap();
+    assert!(
+        said.contains(&format!("inside of areas not drawn: {told} px, the largest {told} px at (2")),
+        "{said}"
+    );
+    let out = folder.file("plot");
+    assert!(run_example("plot", &[&picture, "--out", &out]).status.success());
+    let plotted: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(format!("{out}/report.json")).unwrap()).unwrap();
+    assert_eq!((&plotted["areas"]["number"], &plotted["kept"]), (&1.into(), &false.into()), "{plotted}");
+    let page = std::fs::read_to_string(format!("{out}/report.html")).unwrap();
+    assert!(page.contains("inside of areas not drawn"), "{page}");
+    // Its error is measured against all ink: the middle of the square is 50 px from what is drawn.
+    let plan = ["--max-error-mm", "1", "--width-mm", "40"];
+    let output = run_example("max_error", &[&[picture.as_str()][..], &plan].concat());
+    let said =
+        String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    // Hatched without gaps there is nothing to tell.
+    let hatched = folder.trace_report(&picture, &["--width-mm", "300", "--hatch", "2", "--pen-mm", "2"]);
+    assert_eq!(hatched["areas"]["number"], 0, "{hatched}");
+}
+
+#[test]
+fn spots_that_are_farther_off_than_promised_are_told_with_their_places() {
+    let folder = Folder::new();
+    // A square end of a line 12 px wide: a round pen leaves its corners bare.
+    let is_ink = |x: u32, y: u32| (40..260).contains(&x) && (90..102).contains(&y);
+    let levels = (0..200).flat_map(|y| (0..300).map(move |x| if is_ink(x, y) { 0 } else { 255 }));
+    let picture = folder.write("end.pgm", [b"P5 300 200 255\n".to_vec(), levels.collect()].concat());
+    let report = folder.trace_report(&picture, &["--prefer", "strokes"]);
+    assert_eq!((&report["bare"]["number"], &report["kept"]), (&4.into(), &false.into()), "{report}");
+    for spot in report["bare"]["largest"].as_array().unwrap() {
+        let at = |end: &str, axis: &str| spot[end][axis].as_u64().unwrap();
+        assert!(at("from", "x") == 40 || at("to", "x") == 259, "{spot}");
+        assert!(at("from", "y") == 90 || at("to", "y") == 101, "{spot}");
+        assert!(spot["max_px"].as_f64().unwrap() > 0.5, "{spot}");
+    }
+    let said = String::from_utf8(run_example("trace", &[&picture, "--prefer", "strokes"]).stdout).unwrap();
+    assert!(said.contains("spots farther off than promised"), "{said}");
 }

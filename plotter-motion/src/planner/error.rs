@@ -37,6 +37,11 @@ pub enum PlanError {
         /// The setting that asks for it.
         quantity: &'static str,
     },
+    /// A limit that no path through corners has: they are jumps of the velocity.
+    Corners {
+        /// The limit.
+        quantity: &'static str,
+    },
     /// A setting outside its range.
     Setting {
         /// The setting.
@@ -69,6 +74,11 @@ impl fmt::Display for PlanError {
                 f,
                 "{quantity} asks for what is not built in: build with AllModes, or leave the path exact, the jerk without a limit, \
                  the axes without play and the laser away"
+            ),
+            Self::Corners { quantity } => write!(
+                f,
+                "{quantity} can be limited within a tolerance only: a corner that is passed through its vertex is a jump of the \
+                 velocity"
             ),
             Self::Setting { quantity, value, least, most } => {
                 write!(f, "{quantity} is {value}: it must lie in {least}..={most}")

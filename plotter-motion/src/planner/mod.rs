@@ -11,6 +11,7 @@
 //! [`Planner`] takes [`PlotOp`](crate::PlotOp)s and gives [`Action`]s: stretches of path, and the time law
 //! along them.
 
+mod averaged;
 mod blend;
 mod block;
 mod error;
@@ -34,6 +35,7 @@ mod stretch;
 mod sum_down;
 mod time_law;
 
+pub use averaged::Averaged;
 pub use error::PlanError;
 pub use junction::junction_speed;
 pub use look_ahead::Planner;

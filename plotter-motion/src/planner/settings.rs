@@ -139,9 +139,9 @@ crate::checked_serde::checked_deserialize!(
 );
 
 /// Least and greatest limit that a motion is planned with: a micrometre a second to ten kilometres a second.
-const LIMITS: (f64, f64) = (1e-3, 1e7);
+pub(super) const LIMITS: (f64, f64) = (1e-3, 1e7);
 /// Greatest jerk, mm/s³: a motion with it is a trapezoid for any machine.
-const MOST_JERK: f64 = 1e12;
+pub(super) const MOST_JERK: f64 = 1e12;
 /// Least and greatest tolerance, mm: a nanometre, below any motor's step, and a metre, beyond any drawing's
 /// detail.
 pub(super) const LEAST_TOLERANCE_MM: f64 = 1e-6;

@@ -13,9 +13,12 @@
 //! [`timed_events`] is both in one call, for a desktop. [`Estimator`] tells the time without the steps: a
 //! [`PlotTimer`] adds up the same phases by the same clock.
 //!
+//! [`AveragedSteps`] behind it limits the jerk as a vector.
+//!
 //! When a phase or a chord begins, floats are turned into whole numbers. From step to step there are only
 //! whole numbers.
 
+mod averaged_steps;
 mod backlash_steps;
 mod chord;
 mod estimator;
@@ -28,6 +31,7 @@ mod timed_events;
 
 pub(crate) use chord::place_on;
 
+pub use averaged_steps::AveragedSteps;
 pub use backlash_steps::BacklashSteps;
 pub use estimator::Estimator;
 pub use plot_timer::{PlotTime, PlotTimer};

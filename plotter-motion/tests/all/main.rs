@@ -96,6 +96,7 @@ mod serde_plot_ops;
 mod serde_settings;
 mod short_chords;
 mod shown;
+mod sim_averaged;
 mod sim_backlash;
 mod sim_bad_wiring;
 mod sim_bench;

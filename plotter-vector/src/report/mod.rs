@@ -7,7 +7,7 @@ mod error_chart;
 mod error_report;
 mod followed_lines;
 
-pub use coverage::{Beyond, beyond_ink, coverage, worst_pixel};
+pub use coverage::{Beyond, Spot, Spots, beyond_ink, coverage, worst_pixel};
 pub use drawn_error::InkDistance;
 pub use error_chart::error_chart;
 pub use error_report::{Bin, ErrorReport, ErrorTally};

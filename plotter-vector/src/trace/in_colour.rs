@@ -1,6 +1,6 @@
 //! [`Vectorizer::vectorize_colour`]: the whole way from a picture in colour to the strokes of each pen.
 
-use crate::report::coverage::{Beyond, add_coverage};
+use crate::report::coverage::{Faults, add_coverage};
 use crate::trace::pipeline::Unordered;
 use crate::{
     ink::{Despeckled, Palette, Pens, Threshold, ThresholdMethod, Unassigned},
@@ -100,14 +100,14 @@ impl Vectorizer {
         }
         (drawing, _) = self.in_order(drawing, None, thinnest_px);
         progress.part(ORDERED).at(1, 1)?;
-        let (mut tally, mut beyond) = (ErrorTally::default(), Beyond::default());
+        let (mut tally, mut faults) = (ErrorTally::default(), Faults::default());
         let mut measuring = progress.part(1.0);
         for (done, (pen, (ink, areas))) in
             (1..).zip(layers.palette().pens().iter().zip(inks.iter().zip(&openings)))
         {
             let areas = areas.as_ref().map(|areas| self.area_pen(areas));
-            let of_pen = add_coverage(ink, &drawing.of_pen(pen.number), areas, &mut tally);
-            beyond = beyond.and(of_pen);
+            let (drawn, within) = (drawing.of_pen(pen.number), (areas, self.ours.tolerance_px));
+            faults = faults.and(add_coverage(ink, &drawn, within, &mut tally));
             measuring.at(done, of)?;
         }
         let mut doubt = None;
@@ -115,7 +115,9 @@ impl Vectorizer {
             doubt = doubt.or(self.doubt(&drawing.of_pen(pen.number), ink, Despeckled::default(), 0)?);
         }
         let error = tally.report();
-        let traced = Vectorized { drawing, error, beyond, split: None, look: None, removed, doubt };
+        let Faults { beyond, bare, insides } = faults;
+        let traced =
+            Vectorized { drawing, error, beyond, bare, insides, split: None, look: None, removed, doubt };
         let unassigned = match self.algorithm {
             Algorithm::Ours => {
                 // A level that was chosen for one pen says nothing of several.

@@ -10,7 +10,7 @@ use crate::raster::continuity::{Joined, join, link};
 use crate::raster::cut_at_turns::cut_at_turns;
 use crate::raster::raster_corner::{put_back, take_out};
 use crate::raster::straight_on::{GoneOn, straight_on};
-use crate::report::coverage::{AreaPen, Beyond, Index, add_coverage, beyond_hairlines, with_widths};
+use crate::report::coverage::{AreaPen, Beyond, Faults, Index, Spots, add_coverage, with_widths};
 use crate::report::covered_figures::Covered;
 use crate::stroke::Pieces;
 use crate::stroke::clip_to_picture::within;
@@ -161,6 +161,11 @@ pub struct Vectorized {
     pub error: ErrorReport,
     /// What the pens draw beside the ink.
     pub beyond: Beyond,
+    /// Ink that lies farther from the strokes than the tolerance of ours.
+    pub bare: Spots,
+    /// Ink inside of areas that no pen draws, because they are outlined or hatched with gaps: no error is told
+    /// of it.
+    pub insides: Spots,
     /// How ink was told from paper; `None` for an empty sheet, or for a picture that came as a bitmap.
     pub split: Option<Split>,
     /// What was found of a picture whose ink no single level tells from its paper.
@@ -260,6 +265,8 @@ impl Vectorizer {
         Ok(Vectorized {
             error: errors.report,
             beyond: errors.beyond,
+            bare: errors.bare,
+            insides: errors.insides,
             split: None,
             look: None,
             doubt: self.doubt(&drawing, &ink, removed, left_out)?,
@@ -352,7 +359,13 @@ impl Vectorizer {
         areas: Option<&Opening>,
     ) -> SheetErrors {
         match known {
-            Some(errors) => SheetErrors { beyond: beyond_hairlines(ink, drawing), ..errors },
+            Some(errors) => {
+                let within_px = self.ours.tolerance_px;
+                let has_bare = self.algorithm == Algorithm::Ours && errors.report.max_px > within_px;
+                let Faults { beyond, bare, insides } =
+                    Faults::of_hairlines(ink, drawing, within_px, has_bare);
+                SheetErrors { beyond, bare, insides, ..errors }
+            }
             None => self.errors(ink, drawing, areas),
         }
     }
@@ -360,8 +373,9 @@ impl Vectorizer {
     /// The errors of a drawing, with the areas that were told from lines.
     fn errors(&self, ink: &Bitmap, drawing: &Drawing, areas: Option<&Opening>) -> SheetErrors {
         let mut tally = ErrorTally::default();
-        let beyond = add_coverage(ink, drawing, areas.map(|areas| self.area_pen(areas)), &mut tally);
-        SheetErrors { report: tally.report(), worst: tally.worst(), beyond }
+        let within = (areas.map(|areas| self.area_pen(areas)), self.ours.tolerance_px);
+        let Faults { beyond, bare, insides } = add_coverage(ink, drawing, within, &mut tally);
+        SheetErrors { report: tally.report(), worst: tally.worst(), beyond, bare, insides }
     }
 
     /// The pen that draws areas.

@@ -13,15 +13,15 @@ use core::f64::consts::TAU;
 use plotter_vector::{Bitmap, Drawing, Pixel, Prefer, PxPoint, Vectorizer};
 use std::collections::BTreeSet;
 
-const SIDE_PX: u32 = 200;
+pub(crate) const SIDE_PX: u32 = 200;
 
 /// The tolerance of all of it, px.
-const WITHIN_PX: f64 = 0.5;
+pub(crate) const WITHIN_PX: f64 = 0.5;
 
-const PENS_PX: [f64; 8] = [1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
+pub(crate) const PENS_PX: [f64; 8] = [1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
 
 /// A drawing of lines, circles, tangents, zigzags and dots.
-fn drawing(seed: u64) -> Vec<Line> {
+pub(crate) fn drawing(seed: u64) -> Vec<Line> {
     let mut numbers = Random(0x9e37_79b9_7f4a_7c15 ^ seed.wrapping_mul(0x2545_f491_4f6c_dd1d));
     let mut next = move |least: f64, most: f64| least + (most - least) * numbers.unit();
     let at = PxPoint::new;
@@ -70,7 +70,7 @@ fn drawing(seed: u64) -> Vec<Line> {
     lines
 }
 
-fn distance_px(drawing: &Drawing, at: Pixel) -> f64 {
+pub(crate) fn distance_px(drawing: &Drawing, at: Pixel) -> f64 {
     let at = PxPoint::from(at);
     let to_stroke = |stroke: &[PxPoint]| {
         let dot = stroke.first().map_or(f64::INFINITY, |first| first.distance(at));

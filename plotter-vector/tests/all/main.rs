@@ -77,4 +77,5 @@ mod svg_text;
 mod thin_lines;
 mod thinning_ends;
 mod threads;
+mod told_spots;
 mod uneven_light;

@@ -2,9 +2,9 @@
 
 use super::pen_segment::{Bend, PenSegment};
 use super::segment_index::CELL_PX;
-use super::{Index, segments, with_widths};
+use super::{Index, SpotRun, with_widths};
 use crate::{
-    picture::{Bitmap, Pixel},
+    picture::{Bitmap, Pixel, runs::ink_runs},
     stroke::{Drawing, PxPoint, PxVec},
 };
 use core::ops::Range;
@@ -67,11 +67,6 @@ pub fn beyond_ink(ink: &Bitmap, drawing: &Drawing) -> Beyond {
     with_widths(ink, drawing, None).beyond(ink, 0, &(0..ink.height()))
 }
 
-/// The same of lines one pixel wide, which need no width.
-pub(crate) fn beyond_hairlines(ink: &Bitmap, drawing: &Drawing) -> Beyond {
-    Index::new(segments(drawing), ink.width(), ink.height()).beyond(ink, 0, &(0..ink.height()))
-}
-
 impl Index {
     /// What is drawn beside the ink in some rows of the picture. The first row of `ink` is row `first_row` of
     /// it; it has [`FARTHEST_PX`] rows more, above and below, where the picture has.
@@ -88,12 +83,10 @@ impl Index {
 
     /// The same in one row of squares: so many runs of pixels are held at a time.
     fn beyond_in(&self, ink: &Bitmap, first_row: u32, rows: Range<u32>) -> Beyond {
-        let mut drawn = Drawn { width: ink.width(), rows, runs: Vec::new() };
-        self.near(&drawn.rows).into_iter().for_each(|segment| drawn.segment(segment));
-        drawn.runs.sort_unstable();
+        let drawn = self.drawn(ink.width(), rows, 0.0);
         let mut beyond = Beyond::default();
         let (mut row, mut past) = (u32::MAX, 0);
-        for (y, from, to) in drawn.runs {
+        for (y, from, to) in drawn {
             if y != row {
                 (row, past) = (y, 0);
             }
@@ -110,6 +103,67 @@ impl Index {
             past = past.max(to);
         }
         beyond
+    }
+
+    /// Runs of ink in some rows of the picture that no pen comes nearer to than this, in reading order. The
+    /// first row of `ink` is row `first_row` of it.
+    pub(crate) fn bare_runs(
+        &self,
+        ink: &Bitmap,
+        first_row: u32,
+        rows: &Range<u32>,
+        within_px: f64,
+    ) -> Vec<SpotRun> {
+        let mut bare = Vec::new();
+        let mut top = rows.start;
+        while top < rows.end {
+            let end = (top / CELL_PX + 1).saturating_mul(CELL_PX).min(rows.end);
+            let has_ink = |y: u32| ink.row(y - first_row).iter().any(|word| *word != 0);
+            if (top..end).any(has_ink) {
+                self.bare_in(ink, first_row, top..end, within_px, &mut bare);
+            }
+            top = end;
+        }
+        bare
+    }
+
+    /// The same in one row of squares.
+    fn bare_in(
+        &self,
+        ink: &Bitmap,
+        first_row: u32,
+        rows: Range<u32>,
+        within_px: f64,
+        bare: &mut Vec<SpotRun>,
+    ) {
+        let drawn = self.drawn(ink.width(), rows.clone(), within_px);
+        let mut next = 0;
+        for y in rows {
+            next += drawn.get(next..).map_or(0, |left| left.partition_point(|(row, ..)| *row < y));
+            for run in ink_runs(ink.row(y - first_row)) {
+                let mut at = run.start;
+                let mut add = |columns: Range<u32>| {
+                    if columns.start < columns.end {
+                        bare.push(SpotRun { y, columns, max_px: 0.0 });
+                    }
+                };
+                for (_, from, to) in drawn.get(next..).unwrap_or(&[]).iter().take_while(|(row, ..)| *row == y)
+                {
+                    add(at..(*from).min(run.end));
+                    at = at.max(*to);
+                }
+                add(at..run.end);
+            }
+        }
+    }
+
+    /// What pens draw in some rows that lie within one row of squares, were each of them wider by this to
+    /// either side: runs, sorted, which overlap.
+    fn drawn(&self, width: u32, rows: Range<u32>, wider_px: f64) -> Vec<(u32, u32, u32)> {
+        let mut drawn = Drawn { width, rows, wider_px, runs: Vec::new() };
+        self.near(&drawn.rows).into_iter().for_each(|segment| drawn.segment(segment));
+        drawn.runs.sort_unstable();
+        drawn.runs
     }
 }
 
@@ -145,6 +199,8 @@ fn from_ink_px(ink: &Bitmap, at: Pixel) -> f64 {
 struct Drawn {
     width: u32,
     rows: Range<u32>,
+    /// How much farther than its pen a line reaches, px.
+    wider_px: f64,
     runs: Vec<(u32, u32, u32)>,
 }
 
@@ -183,7 +239,7 @@ impl Drawn {
 
     /// What a round pen covers on a straight line.
     fn line(&mut self, from: PxPoint, to: PxPoint, half_px: f64) {
-        let half_px = half_px.max(THINNEST_HALF_PX);
+        let half_px = half_px.max(THINNEST_HALF_PX) + self.wider_px;
         let way = to - from;
         let length = way.length();
         // To its left; upwards for a dot, whose sides are one point.
@@ -223,6 +279,7 @@ impl Drawn {
 mod tests {
     use super::*;
     use crate::report::coverage;
+    use crate::report::coverage::segments;
 
     fn disc_line(drawing: &Drawing, half_px: f64, at: Pixel) -> bool {
         let place = PxPoint::from(at);

@@ -4,6 +4,7 @@ mod beyond;
 mod pen_segment;
 mod pen_widths;
 mod segment_index;
+mod spots;
 
 use crate::areas::Opening;
 use crate::picture::runs::ink_runs;
@@ -12,11 +13,13 @@ use crate::{
     report::{ErrorReport, ErrorTally},
     stroke::Drawing,
 };
+pub(crate) use beyond::FARTHEST_PX;
 pub use beyond::{Beyond, beyond_ink};
-pub(crate) use beyond::{FARTHEST_PX, beyond_hairlines};
 pub(crate) use pen_segment::{Across, PROBE_ROWS, PROBES, PenSegment, segments};
 pub(crate) use pen_widths::{JUMP_PX, set_widths};
 pub(crate) use segment_index::Index;
+pub use spots::{Spot, Spots};
+pub(crate) use spots::{SpotRun, SpotTally, add_pixel};
 
 /// Errors of all pixels of the ink that a drawing stands for, whatever way it was made; the inside of an area
 /// that is outlined counts, too, which [`Vectorized::error`](crate::trace::Vectorized::error) leaves out.
@@ -39,7 +42,7 @@ pub(crate) use segment_index::Index;
 #[must_use]
 pub fn coverage(ink: &Bitmap, drawing: &Drawing) -> ErrorReport {
     let mut tally = ErrorTally::default();
-    add_coverage(ink, drawing, None, &mut tally);
+    add_coverage(ink, drawing, (None, f64::INFINITY), &mut tally);
     tally.report()
 }
 
@@ -72,7 +75,7 @@ pub(crate) fn with_widths(ink: &Bitmap, drawing: &Drawing, areas: Option<AreaPen
 #[must_use]
 pub fn worst_pixel(ink: &Bitmap, drawing: &Drawing) -> Option<(Pixel, f64)> {
     let mut tally = ErrorTally::default();
-    add_coverage(ink, drawing, None, &mut tally);
+    add_coverage(ink, drawing, (None, f64::INFINITY), &mut tally);
     tally.worst()
 }
 
@@ -85,29 +88,78 @@ pub(crate) struct AreaPen<'a> {
     pub(crate) is_raster: bool,
 }
 
-/// Adds the errors of [`coverage`] to others, and tells what is drawn beside the ink. Where areas are drawn
-/// as such, the ink inside of them does not count, only that at their edge, and their outline is as wide as
-/// its pen.
+/// What of a drawing is not as its ink.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Faults {
+    /// What is drawn beside the ink.
+    pub(crate) beyond: Beyond,
+    /// Ink whose errors count and are greater than what is allowed.
+    pub(crate) bare: Spots,
+    /// Ink inside of areas that no pen draws.
+    pub(crate) insides: Spots,
+}
+
+impl Faults {
+    /// Both together.
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            beyond: self.beyond.and(other.beyond),
+            bare: self.bare.and(other.bare),
+            insides: self.insides.and(other.insides),
+        }
+    }
+
+    /// Of lines one pixel wide, which need no width; what is bare is looked for only where some is known to be.
+    pub(crate) fn of_hairlines(ink: &Bitmap, drawing: &Drawing, within_px: f64, has_bare: bool) -> Self {
+        let index = Index::new(segments(drawing), ink.width(), ink.height());
+        let beyond = index.beyond(ink, 0, &(0..ink.height()));
+        let mut faults = Self { beyond, ..Self::default() };
+        if has_bare {
+            let (mut bare, mut covering) = (Vec::new(), 0);
+            for (y, run) in (0..ink.height()).flat_map(|y| ink_runs(ink.row(y)).map(move |run| (y, run))) {
+                index.run_errors(run, y, &mut covering, |at, error_px| {
+                    if error_px > within_px {
+                        add_pixel(&mut bare, at, error_px);
+                    }
+                });
+            }
+            faults.bare = SpotTally::of(bare);
+        }
+        faults
+    }
+}
+
+/// Adds the errors of [`coverage`] to others, and tells what is not as the ink: more than `within_px` off,
+/// drawn beside it, or inside of areas and not drawn. Where areas are drawn as such, the ink inside of them
+/// has no errors that count, only that at their edge, and their outline is as wide as its pen.
 pub(crate) fn add_coverage(
     ink: &Bitmap,
     drawing: &Drawing,
-    areas: Option<AreaPen<'_>>,
+    (areas, within_px): (Option<AreaPen<'_>>, f64),
     tally: &mut ErrorTally,
-) -> Beyond {
+) -> Faults {
     let index = with_widths(ink, drawing, areas);
-    let beyond = index.beyond(ink, 0, &(0..ink.height()));
+    let rows = 0..ink.height();
+    let beyond = index.beyond(ink, 0, &rows);
     let counted = areas.map(|areas| areas.opening.without_insides(ink.clone()));
+    let insides = counted.as_ref().map(|counted| ink.clone().without(counted));
+    let insides = insides.map(|insides| SpotTally::of(index.bare_runs(&insides, 0, &rows, within_px)));
     let ink = counted.as_ref().unwrap_or(ink);
-    let mut covering = 0;
-    for y in 0..ink.height() {
+    let (mut bare, mut covering) = (Vec::new(), 0);
+    for y in rows {
         for run in ink_runs(ink.row(y)) {
             // The first of several worst ones in reading order, if none has an error.
             tally.note_worst(Pixel::new(run.start, y), 0.0);
-            let exact = index.run_errors(run, y, &mut covering, |at, error_px| tally.add_pixel(at, error_px));
+            let exact = index.run_errors(run, y, &mut covering, |at, error_px| {
+                tally.add_pixel(at, error_px);
+                if error_px > within_px {
+                    add_pixel(&mut bare, at, error_px);
+                }
+            });
             tally.add_exact(exact);
         }
     }
-    beyond
+    Faults { beyond, bare: SpotTally::of(bare), insides: insides.unwrap_or_default() }
 }
 
 #[cfg(test)]

@@ -12,13 +12,14 @@ use crate::ink::speckle::despeckle_here;
 use crate::parallel::each;
 use crate::picture::runs::ink_runs;
 use crate::report::coverage::{
-    Across, AreaPen, FARTHEST_PX, Index, PROBE_ROWS, PROBES, PenSegment, segments, set_widths,
+    Across, AreaPen, FARTHEST_PX, Index, PROBE_ROWS, PROBES, PenSegment, SpotRun, SpotTally, add_pixel,
+    segments, set_widths,
 };
 use crate::trace::bare_ink::BareInk;
 use crate::{
     ink::context_rows,
     picture::{Bitmap, Pixel, RowSource},
-    report::{Beyond, ErrorReport, ErrorTally},
+    report::{Beyond, ErrorReport, ErrorTally, Spots},
     stroke::{Curve, Drawing},
     trace::Progress,
 };
@@ -41,7 +42,28 @@ pub struct SheetErrors {
     pub worst: Option<(Pixel, f64)>,
     /// What is drawn beside the ink.
     pub beyond: Beyond,
+    /// Ink that lies farther from the strokes than the tolerance of ours.
+    pub bare: Spots,
+    /// Ink inside of areas that no pen draws, because they are outlined or hatched with gaps; the report has no
+    /// errors of it.
+    pub insides: Spots,
 }
+
+impl SheetErrors {
+    /// Whether a drawing is its ink within a tolerance: no ink lies farther from the strokes, none inside of
+    /// an area is left out, and nothing drawn lies farther from ink than that or the half pixel that a raster
+    /// leaves open. What was taken for dirt before is not asked for.
+    #[must_use]
+    pub fn are_within(&self, tolerance_px: f64) -> bool {
+        self.report.max_px <= tolerance_px
+            && self.insides.number == 0
+            && self.beyond.max_px <= tolerance_px.max(RASTER_PX)
+    }
+}
+
+/// Part of a pixel that a raster leaves open: the border of ink passes anywhere between the middles of two
+/// pixels.
+const RASTER_PX: f64 = 0.5;
 
 /// What the errors of a sheet are measured on.
 #[derive(Clone, Copy, Debug)]
@@ -52,6 +74,8 @@ pub(super) struct Measure<'a> {
     /// Most rows of a band.
     pub(super) band_rows: u32,
     pub(super) areas: AreaPen<'a>,
+    /// How far ink may lie from the strokes, px.
+    pub(super) within_px: f64,
     /// Rows with areas, from the top.
     pub(super) area_rows: &'a [Range<u32>],
 }
@@ -65,6 +89,9 @@ struct BandErrors {
     errors: Vec<f64>,
     worst: Option<(Pixel, f64)>,
     beyond: Beyond,
+    /// What is bare, in the own rows.
+    bare: Vec<SpotRun>,
+    insides: Vec<SpotRun>,
 }
 
 impl Measure<'_> {
@@ -78,17 +105,24 @@ impl Measure<'_> {
     ) -> Result<SheetErrors, SheetError> {
         let index = self.widths(source, drawing, &mut progress.part(0.5))?;
         let (mut tally, mut beyond) = (ErrorTally::default(), Beyond::default());
+        let (mut bare, mut insides) = (SpotTally::default(), SpotTally::default());
         self.for_each_band(
             source,
             (ERROR_BAND_PIXELS, self.area_context().max(FARTHEST_PX)),
             &mut progress.part(1.0),
             |ink, first_row, own| {
                 let counted = self.counted(ink, own);
-                let band = band_errors(&index, counted.as_ref().unwrap_or(ink), first_row, own);
-                BandErrors { beyond: index.beyond(ink, first_row, own), ..band }
+                let band = self.band_errors(&index, counted.as_ref().unwrap_or(ink), first_row, own);
+                let insides = counted.map(|counted| {
+                    index.bare_runs(&ink.clone().without(&counted), first_row, own, self.within_px)
+                });
+                let insides = insides.unwrap_or_default();
+                BandErrors { beyond: index.beyond(ink, first_row, own), insides, ..band }
             },
             |band| {
                 beyond = beyond.and(band.beyond);
+                band.bare.iter().for_each(|run| bare.add(run));
+                band.insides.iter().for_each(|run| insides.add(run));
                 tally.add_exact(band.exact);
                 band.errors.iter().for_each(|error_px| tally.add_error(*error_px));
                 if let Some((at, error_px)) = band.worst {
@@ -96,7 +130,8 @@ impl Measure<'_> {
                 }
             },
         )?;
-        Ok(SheetErrors { report: tally.report(), worst: tally.worst(), beyond })
+        let (bare, insides) = (bare.finish(), insides.finish());
+        Ok(SheetErrors { report: tally.report(), worst: tally.worst(), beyond, bare, insides })
     }
 
     /// Strokes for the ink that a drawing leaves bare.
@@ -128,6 +163,28 @@ impl Measure<'_> {
     /// The ink whose errors count, if that is not all in these rows.
     fn counted(&self, ink: &Bitmap, rows: &Range<u32>) -> Option<Bitmap> {
         self.has_areas(rows).then(|| self.areas.opening.without_insides(ink.clone()))
+    }
+
+    fn band_errors(self, index: &Index, ink: &Bitmap, first_row: u32, own: &Range<u32>) -> BandErrors {
+        let mut band = BandErrors::default();
+        let mut covering = 0;
+        for y in own.clone() {
+            for run in ink_runs(ink.row(y - first_row)) {
+                let BandErrors { exact, errors, worst, bare, .. } = &mut band;
+                // The first of several in reading order, if none has an error.
+                worst.get_or_insert((Pixel::new(run.start, y), 0.0));
+                *exact += index.run_errors(run, y, &mut covering, |at, error_px| {
+                    errors.push(error_px);
+                    if worst.is_none_or(|(_, most_px)| error_px > most_px) {
+                        *worst = Some((at, error_px));
+                    }
+                    if error_px > self.within_px {
+                        add_pixel(bare, at, error_px);
+                    }
+                });
+            }
+        }
+        band
     }
 
     fn area_context(&self) -> u32 {
@@ -218,23 +275,4 @@ fn probes(
         here.map(|(probe, part)| (index, probe, segment.width_at(*part, ink, first_row))).collect::<Vec<_>>()
     };
     near.flat_map(of_segment).collect()
-}
-
-fn band_errors(index: &Index, ink: &Bitmap, first_row: u32, own: &Range<u32>) -> BandErrors {
-    let mut band = BandErrors::default();
-    let mut covering = 0;
-    for y in own.clone() {
-        for run in ink_runs(ink.row(y - first_row)) {
-            let BandErrors { exact, errors, worst, .. } = &mut band;
-            // The first of several in reading order, if none has an error.
-            worst.get_or_insert((Pixel::new(run.start, y), 0.0));
-            *exact += index.run_errors(run, y, &mut covering, |at, error_px| {
-                errors.push(error_px);
-                if worst.is_none_or(|(_, most_px)| error_px > most_px) {
-                    *worst = Some((at, error_px));
-                }
-            });
-        }
-    }
-    band
 }

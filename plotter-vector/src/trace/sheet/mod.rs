@@ -284,6 +284,7 @@ impl Vectorizer {
             smallest_px,
             band_rows: self.band_rows,
             areas: AreaPen { is_raster: keeps_pixels, ..self.area_pen(&opening) },
+            within_px: self.ours.tolerance_px,
             area_rows: &area_rows,
         };
         if self.adds_strokes() {
