@@ -16,8 +16,8 @@ const SAME_STROKE_MM: f64 = 20.0;
 const PRIMES: [(u16, u16); 5] = [(5, 2), (7, 3), (11, 2), (17, 3), (23, 5)];
 
 impl ReferenceLines {
-    /// The same marks, each moved across its length by another distance: those of ours by up to 3 mm to
-    /// either side.
+    /// The same marks, each moved across its length by another distance: rows of ten by up to 3 mm to either
+    /// side. [`strip16`](Self::strip16) and the others of ours have it already.
     ///
     /// Marks in straight rows are imitated by one straight stroke beside each row: wherever a scan meets a
     /// mark it meets that stroke, always as far beside, and the sheet seems to lie there. Marks on both sides
@@ -31,10 +31,13 @@ impl ReferenceLines {
     /// properties of Costas arrays" (1984).
     ///
     /// ```
-    /// # use plotter_stitch::ReferenceLines;
-    /// let marks: Vec<_> = ReferenceLines::strip16().with_pattern().crossings().map(|c| c.mark_mm).collect();
-    /// // Powers of 2 mod 11 are 1, 2, 4, 8: from 5.5 steps of 0.65 mm before -34 mm, left and right, and before -8 mm.
-    /// for (mark_mm, at_mm) in marks.iter().zip([-36.925, -36.275, -8.975, -6.375]) {
+    /// # use plotter_motion::Axis;
+    /// # use plotter_stitch::{MarkGroup, ReferenceLines};
+    /// let row = MarkGroup { axis: Axis::Y, at_mm: vec![18.0], scans_mm: vec![-32.0, 0.0, 2000.0, 2032.0] };
+    /// let rows = ReferenceLines { marks: vec![row], ..ReferenceLines::published() };
+    /// let marks: Vec<_> = rows.with_pattern().crossings().map(|crossing| crossing.mark_mm).collect();
+    /// // Powers of 2 mod 5 are 1, 2, 4, 3: from 2.5 steps of 0.65 mm before 18 mm on.
+    /// for (mark_mm, at_mm) in marks.iter().zip([17.025, 17.675, 18.975, 18.325]) {
     ///     assert!((mark_mm - at_mm).abs() < 1e-9);
     /// }
     /// ```
@@ -97,19 +100,25 @@ mod tests {
     /// What is nearer than this to a stroke's place could be it, mm: what two fast passes differ by.
     const NEAR_MM: f64 = 0.3;
 
-    /// Scan, and by how much its mark is moved; scans over one stroke once.
-    fn moved(lines: &ReferenceLines, axis: Axis) -> Vec<(f64, f64)> {
-        let with_pattern = lines.with_pattern();
-        assert_eq!(with_pattern.check(), Ok(()));
+    /// The row in which a mark stood, its scan, and by how much it was moved; scans over one stroke once.
+    fn moved(lines: &ReferenceLines, axis: Axis) -> Vec<(f64, f64, f64)> {
+        assert_eq!(lines.check(), Ok(()));
+        let rows_mm: &[f64] = match axis {
+            Axis::X => &[-10.0, 2_010.0],
+            Axis::Y => &[-34.0, -8.0, 18.0, 44.0, 70.0],
+        };
+        let of_row = |mark_mm: f64| {
+            let row_mm = rows_mm.iter().copied().find(|row_mm| (mark_mm - row_mm).abs() < 3.0).unwrap();
+            (row_mm, mark_mm - row_mm)
+        };
         let mut moved: Vec<_> = lines
             .crossings()
-            .zip(with_pattern.crossings())
-            .inspect(|(before, after)| assert_eq!(before.scan_at_mm, after.scan_at_mm))
-            .filter(|(before, _)| before.axis == axis)
-            .map(|(before, after)| (before.mark_mm, before.scan_at_mm, after.mark_mm - before.mark_mm))
+            .filter(|crossing| crossing.axis == axis)
+            .map(|crossing| (of_row(crossing.mark_mm), crossing.scan_at_mm))
+            .map(|((row_mm, by_mm), scan_at_mm)| (row_mm, scan_at_mm, by_mm))
             .collect();
         moved.dedup_by(|one, other| one.0 == other.0 && (one.1 - other.1).abs() < 20.0);
-        moved.into_iter().map(|(_, scan_at_mm, by_mm)| (scan_at_mm, by_mm)).collect()
+        moved
     }
 
     #[test]
@@ -117,9 +126,8 @@ mod tests {
         for lines in [ReferenceLines::strip16(), ReferenceLines::strip24(), ReferenceLines::strip32()] {
             for axis in [Axis::X, Axis::Y] {
                 let moved = moved(&lines, axis);
-                for (index, (_, one)) in moved.iter().enumerate() {
-                    assert!(one.abs() < 3.0);
-                    assert!(moved[index + 1..].iter().all(|(_, other)| (one - other).abs() > 2.0 * NEAR_MM));
+                for (index, (.., one)) in moved.iter().enumerate() {
+                    assert!(moved[index + 1..].iter().all(|(.., other)| (one - other).abs() > 2.0 * NEAR_MM));
                 }
             }
         }
@@ -130,13 +138,12 @@ mod tests {
     #[test]
     fn slanted_strokes_are_beside_few_marks_alike() {
         let moved = moved(&ReferenceLines::strip16(), Axis::Y);
-        let pairs: Vec<[(f64, f64); 2]> = moved.chunks(2).map(|pair| [pair[0], pair[1]]).collect();
-        assert_eq!(pairs.len(), 5);
+        assert_eq!(moved.len(), 10);
         for one in &moved {
-            for other in moved.iter().filter(|other| other.0 != one.0) {
-                let slope = (other.1 - one.1) / (other.0 - one.0);
+            for other in moved.iter().filter(|other| other.1 != one.1) {
+                let slope = (other.2 - one.2) / (other.1 - one.1);
                 let is_beside =
-                    |mark: &&(f64, f64)| (mark.1 - one.1 - slope * (mark.0 - one.0)).abs() < NEAR_MM;
+                    |mark: &&(f64, f64, f64)| (mark.2 - one.2 - slope * (mark.1 - one.1)).abs() < NEAR_MM;
                 // The two that define it, and no other.
                 assert_eq!(moved.iter().filter(is_beside).count(), 2);
             }

@@ -29,6 +29,9 @@ pub struct FeedSettings {
     /// Standard deviation of the paper's stretch between drawing a mark and finding it again, as a fraction
     /// of the length along the sheet.
     pub stretch: f64,
+    /// Standard deviation of the paper's swelling across its way between drawing and finding again, as a
+    /// fraction of its width.
+    pub swelling: f64,
     /// Fraction of the moves at which the paper folds, 0 to 1.
     pub folds: f64,
     /// Distance between the two strokes of a probe across a fold: least and greatest, mm.
@@ -44,6 +47,7 @@ impl Default for FeedSettings {
             most_turn_rad: 0.002,
             led: 0.05,
             stretch: 1e-5,
+            swelling: 0.0,
             folds: 0.0,
             fold_mm: [0.2, 2.0],
         }
@@ -57,6 +61,8 @@ pub struct PaperMove {
     pub motion: FrameTransform,
     /// Stretch of the paper since the last move, as a fraction of the length.
     pub stretch: f64,
+    /// Growth of the paper's width meanwhile, as a fraction of it; negative where it has shrunk.
+    pub swelling: f64,
     /// Distance between two strokes across the fold, mm, if the paper has folded.
     pub fold_mm: Option<f64>,
 }
@@ -118,7 +124,8 @@ impl Feed {
         let folds = self.random.unit() < self.settings.folds;
         let [least_mm, most_mm] = self.settings.fold_mm;
         let fold_mm = self.random.between(least_mm, most_mm);
-        PaperMove { motion, stretch, fold_mm: folds.then_some(fold_mm) }
+        let [swelling, _] = self.random.normals(self.settings.swelling);
+        PaperMove { motion, stretch, swelling, fold_mm: folds.then_some(fold_mm) }
     }
 
     /// A person straightens the paper by hand, up to the drift and turn of one move. Returns where a point of

@@ -138,6 +138,7 @@ pub(super) struct Change {
     /// How the lines of the frame before lie now.
     pub(super) truth: FrameTransform,
     stretch: f64,
+    swelling: f64,
     pub(super) fold_mm: Option<f64>,
     drawn: FrameTransform,
     chain: Chain,
@@ -272,8 +273,8 @@ impl<M: JoinFrames> LongSheet<M> {
         self.probes.clear();
         self.x_border2_mm[0] = self.x_border2_mm[1];
         let Self { drawn, chain, anchor, .. } = *self;
-        let PaperMove { stretch, fold_mm, .. } = moved;
-        self.change = Some(Change { truth, stretch, fold_mm, drawn, chain, anchor });
+        let PaperMove { stretch, swelling, fold_mm, .. } = moved;
+        self.change = Some(Change { truth, stretch, swelling, fold_mm, drawn, chain, anchor });
         self.measure()
     }
 
@@ -296,10 +297,24 @@ impl<M: JoinFrames> LongSheet<M> {
         self.measure()
     }
 
+    /// Somebody has looked at the paper after [`FitError::Shrunk`](crate::FitError::Shrunk): it lies flat.
+    /// The marks are looked for anew and believed.
+    ///
+    /// # Errors
+    ///
+    /// As [`measure_anew`](Self::measure_anew).
+    pub fn seen_flat(&mut self) -> Result<JointReport, JoinError> {
+        let usual = self.method.clone();
+        self.method = usual.on_flat_paper();
+        let told = self.measure();
+        self.method = usual;
+        told
+    }
+
     /// Looks for the marks, as often as is asked, and tells how the frame lies.
     pub(super) fn measure(&mut self) -> Result<JointReport, JoinError> {
         self.is_joined = self.change.is_none();
-        let Change { truth, stretch, fold_mm, drawn, chain, anchor } =
+        let Change { truth, stretch, swelling, fold_mm, drawn, chain, anchor } =
             self.change.ok_or(JoinError::NoJoint)?;
         (self.drawn, self.chain, self.anchor) = (drawn, chain, anchor);
         let frame_mm = self.settings.field.frame_mm;
@@ -307,8 +322,9 @@ impl<M: JoinFrames> LongSheet<M> {
         let view = Vec2::new(self.drawn.shift().x, 0.0);
         let seen =
             FrameTransform::new(truth.angle_rad(), truth.shift() - view).map_err(JoinError::Transform)?;
+        let crossings = self.method.crossings().iter();
         let stretched: Vec<Crossing> =
-            self.method.crossings().iter().map(|crossing| self.stretched(*crossing, stretch)).collect();
+            crossings.map(|crossing| self.stretched(*crossing, stretch, swelling)).collect();
         let SheetSettings { optics, noise, .. } = self.settings;
         let mut joint = SensedJoint::new(&stretched, &seen, optics, noise, self.random.bits()).with_drawing(
             &stretched,
@@ -366,14 +382,14 @@ impl<M: JoinFrames> LongSheet<M> {
             .collect()
     }
 
-    /// A mark as it lies on paper that has become longer along y, from the joint on.
-    fn stretched(&self, crossing: Crossing, stretch: f64) -> Crossing {
-        let begin_mm = self.settings.field.begin_mm;
-        match crossing.axis {
-            Axis::Y => {
-                Crossing { mark_mm: begin_mm + (crossing.mark_mm - begin_mm) * (1.0 + stretch), ..crossing }
-            }
-            Axis::X => crossing,
-        }
+    /// A mark as it lies on paper that has become longer along y, from the joint on, and wider, from its
+    /// middle on.
+    fn stretched(&self, crossing: Crossing, stretch: f64, swelling: f64) -> Crossing {
+        let Field { left_mm, width_mm, begin_mm, .. } = self.settings.field;
+        let (still_mm, by) = match crossing.axis {
+            Axis::Y => (begin_mm, stretch),
+            Axis::X => (left_mm + 0.5 * width_mm, swelling),
+        };
+        Crossing { mark_mm: still_mm + (crossing.mark_mm - still_mm) * (1.0 + by), ..crossing }
     }
 }

@@ -3,8 +3,8 @@
 use super::SensedJoint;
 use crate::marks::ASTRAY_MM;
 use crate::{
-    Crossing, Field, FitError, FrameTransform, Mark, MarkPlacer, MarkSearch, Optics, ReferenceLines,
-    RigidFit,
+    Crossing, Field, FitError, FrameTransform, JointEstimate, Mark, MarkPlacer, MarkSearch, Optics,
+    ReferenceLines, RigidFit,
     joint::{JointSigma, Residual, TransformError},
     marks::{DrawnStrip, MarkError},
     sense::{PublishedSearch, SearchError, SearchSettings},
@@ -51,6 +51,13 @@ pub trait JoinFrames: Clone {
     ///
     /// [`JoinError`]: nothing must be drawn.
     fn join(&self, joint: &mut SensedJoint) -> Result<Joined, JoinError>;
+
+    /// The same procedure on paper that somebody has looked at: it lies flat, and marks nearer to each other
+    /// than they were drawn are on paper that has shrunk. The published procedure does not ask for that.
+    #[must_use]
+    fn on_flat_paper(&self) -> Self {
+        self.clone()
+    }
 }
 
 /// A mark reaches this far to both sides of its scan, mm: farther than the paper walks between two frames.
@@ -249,17 +256,32 @@ impl JoinFrames for StripJoin {
                 ))
             })
             .fold(0.0, f64::max);
+        let transform = at_joint(&estimate, self.joint).map_err(JoinError::Transform)?;
         let middle = self.joint[0].lerp(self.joint[1], 0.5);
         let sigma =
             JointSigma { lateral_mm: estimate.sigma_at_mm(middle).x, angle_rad: estimate.sigma_angle_rad() };
         Ok(Joined {
-            transform: estimate.transform,
+            transform,
             sigma: Some(sigma),
             marks: estimate.inlier_count(),
             x_border2_mm: None,
             residual_mm: Some(residual_mm),
         })
     }
+
+    fn on_flat_paper(&self) -> Self {
+        Self { fit: RigidFit { is_flat: true, ..self.fit }, ..self.clone() }
+    }
+}
+
+/// The turn and shift that carry both ends of the joint nearest to where they lie on paper that has swollen:
+/// those that fit the marks best lie towards the side whose marks are known better.
+fn at_joint(estimate: &JointEstimate, joint: [Point; 2]) -> Result<FrameTransform, TransformError> {
+    let [from, to] = joint.map(|end| estimate.to_machine(end));
+    let (way, drawn) = (to - from, joint[1] - joint[0]);
+    let angle_rad = libm::atan2(drawn.cross(way), drawn.dot(way));
+    let middle = joint[0].lerp(joint[1], 0.5) - Point::ORIGIN;
+    FrameTransform::new(angle_rad, from.lerp(to, 0.5) - Point::ORIGIN - middle.rotated(angle_rad))
 }
 
 /// Why two frames were not joined.

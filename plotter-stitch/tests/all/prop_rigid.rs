@@ -85,8 +85,10 @@ proptest! {
                     error,
                     FitError::Unchecked { .. }
                         | FitError::Unsure { .. }
-                        | FitError::Swollen { .. }
+                        | FitError::Shrunk { .. }
                         | FitError::Ambiguous { .. }
+                        | FitError::Strokes { .. }
+                        | FitError::Swollen { .. }
                 ),
                 "{error}"
             ),
@@ -280,19 +282,28 @@ fn marks_beside_the_field_tell_how_little_they_know_of_a_bow() {
     assert!(sigma_mm.x < 0.02 && (0.1..0.12).contains(&sigma_mm.y), "{sigma_mm:?}");
 }
 
-/// Paper that swells more may have folded: a fold of half a millimetre moves an end of the joint by as much
-/// as is taken.
+/// Marks nearer to each other may be a fold between them: one of half a millimetre moves an end of the joint
+/// by as much as is taken. Marks farther apart are none, and who has looked may say that there is none.
 #[test]
 fn what_may_be_a_fold_is_refused() {
     let crossings: Vec<Crossing> = ReferenceLines::strip16().crossings().collect();
-    let warped = Warped { swelling: -3e-4, ..warped() };
-    let error = RigidFit::default().estimate(&crossings, &warped.found(&crossings)).unwrap_err();
-    let FitError::Swollen { swelling, effect_mm, most_mm } = error else { panic!("{error}") };
+    let told = |swelling: f64, fit: RigidFit| {
+        let warped = Warped { swelling, bow_mm: 0.0, ..warped() };
+        let told = fit.estimate(&crossings, &warped.found(&crossings))?;
+        for end in warped.joint {
+            assert!(told.to_machine(end).distance(warped.moved(end)) < 0.01, "{told:?}");
+        }
+        Ok(told.swelling)
+    };
+    let error: FitError = told(-3e-4, RigidFit::default()).unwrap_err();
+    let FitError::Shrunk { shrunk, effect_mm, most_mm } = error else { panic!("{error}") };
     assert!(
-        (swelling + 3e-4).abs() < 2e-5 && (0.29..0.33).contains(&effect_mm) && most_mm == 0.25,
+        (3e-4..3.4e-4).contains(&shrunk) && (0.29..0.33).contains(&effect_mm) && most_mm == 0.25,
         "{error}"
     );
-    assert!(error.to_string().contains("look for a fold between them"), "{error}");
+    assert!(error.to_string().contains("look at the paper, and measure anew as flat"), "{error}");
+    assert!((told(-3e-4, RigidFit { is_flat: true, ..RigidFit::default() }).unwrap() + 3e-4).abs() < 1e-5);
+    assert!((told(3e-4, RigidFit::default()).unwrap() - 3e-4).abs() < 1e-5);
 }
 
 /// What the default does not know: a stroke beside straight rows may be the marks.
@@ -310,7 +321,72 @@ fn marks_and_a_copy_of_them_beside_are_refused() {
         "along y another place of the sheet explains what was seen at 10 crossings besides; keep strokes off the marks, or give \
          the marks a pattern"
     );
-    // One crossing where something else was seen says nothing.
-    found.truncate(17);
+    // One crossing where something else was seen says nothing, and neither do two along one axis.
+    found.truncate(18);
     assert!(RigidFit::default().estimate(&crossings, &found).is_ok());
+    // Two along both axes that lie the same way are another sheet.
+    let beside = |index: usize| Found { at_mm: found[index].at_mm + 4.0, ..found[index] };
+    found.extend([beside(10), beside(14)]);
+    let error = RigidFit::default().estimate(&crossings, &found).unwrap_err();
+    assert_eq!(error, FitError::Ambiguous { axis: Axis::Y, crossings: 2 });
+}
+
+/// A pose that shares the marks at one side with the told one, and explains as many but for one.
+#[test]
+fn a_sheet_that_is_turned_otherwise_is_refused() {
+    let crossings: Vec<Crossing> = ReferenceLines::strip16().crossings().collect();
+    let mut found = exact(&crossings, &FrameTransform::IDENTITY);
+    let left = |index: &usize| crossings[*index].axis == Axis::Y && crossings[*index].scan_at_mm < 0.0;
+    let beside: Vec<Found> = (0..found.len())
+        .filter(left)
+        .map(|index| Found { at_mm: found[index].at_mm + 3.0, ..found[index] })
+        .collect();
+    // Three of five at the left were seen twice, 3 mm apart: eight of ten against all ten.
+    found.extend(&beside[..2]);
+    assert!(RigidFit::default().estimate(&crossings, &found).is_ok());
+    // Two of the five were seen there alone.
+    let gone: Vec<usize> = (0..16).filter(left).skip(2).take(2).collect();
+    found.retain(|place| !gone.contains(&place.crossing));
+    let error = RigidFit::default().estimate(&crossings, &found).unwrap_err();
+    assert_eq!(error, FitError::Ambiguous { axis: Axis::Y, crossings: 7 });
+}
+
+/// Strokes of the drawing on many ways: of the marks at either side three must agree, and no swelling is
+/// believed.
+#[test]
+fn among_strokes_more_marks_are_asked_for() {
+    let crossings: Vec<Crossing> = ReferenceLines::strip16().crossings().collect();
+    // 4 to 9 mm beside the marks, no two alike.
+    let strokes = |found: &[Found], of: std::ops::Range<usize>| -> Vec<Found> {
+        let by_mm = |index: usize| 4.0 + (index * index) as f64 * 0.37 % 5.0;
+        of.map(|index| Found { at_mm: found[index].at_mm + by_mm(index), ..found[index] }).collect()
+    };
+    let told = |mut found: Vec<Found>, of: std::ops::Range<usize>, gone: &[usize]| {
+        found.extend(strokes(&found, of));
+        found.retain(|place| !(gone.contains(&place.crossing) && found_is_mark(&crossings, place)));
+        RigidFit::default().estimate(&crossings, &found)
+    };
+    let still = exact(&crossings, &FrameTransform::IDENTITY);
+    // Even ones of the first ten are at the left.
+    assert!(told(still.clone(), 0..10, &[0, 2]).is_ok());
+    let error = told(still.clone(), 0..10, &[0, 2, 4]).unwrap_err();
+    assert_eq!(error, FitError::Strokes { axis: Axis::Y, agree: 2, least: 3 });
+    assert!(error.to_string().contains("only 2 marks agree at one side of the field"), "{error}");
+    // Without strokes the same two are enough.
+    assert!(told(still.clone(), 0..0, &[0, 2, 4]).is_ok());
+    // Marks of constant x: one side in full is enough.
+    assert!(told(still.clone(), 10..16, &[10]).is_ok());
+    let error = told(still, 10..16, &[10, 13]).unwrap_err();
+    assert_eq!(error, FitError::Strokes { axis: Axis::X, agree: 2, least: 3 });
+
+    let swollen = Warped { swelling: 3e-4, bow_mm: 0.0, ..warped() }.found(&crossings);
+    assert!(told(swollen.clone(), 0..0, &[]).is_ok());
+    let error = told(swollen, 0..10, &[]).unwrap_err();
+    assert!(matches!(error, FitError::Swollen { .. }), "{error}");
+    assert!(error.to_string().contains("as if the paper had swollen by 0.0"), "{error}");
+}
+
+/// Whether a place lies where its mark does on a sheet that has hardly moved.
+fn found_is_mark(crossings: &[Crossing], place: &Found) -> bool {
+    (place.at_mm - crossings[place.crossing].mark_mm).abs() < 3.5
 }

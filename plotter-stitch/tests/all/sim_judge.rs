@@ -6,16 +6,35 @@
 //! TABLE=straight SEEDS=7000000..7020000 cargo test --release -p plotter-stitch --test all sim_judge:: -- --ignored --nocapture
 //! TABLE=pattern SEEDS=7000000..7020000 cargo test --release -p plotter-stitch --test all sim_judge:: -- --ignored --nocapture
 //! ```
+//!
+//! `WORLD=hatching` takes the rows of a table alone whose names have that in them.
 
-use crate::judge::{Pen, Stroke, World, many, trial};
+use crate::judge::{Chance, Pen, Stroke, World, many, trial};
 use plotter_motion::Axis;
-use plotter_stitch::ReferenceLines;
+use plotter_stitch::{Field, MarkGroup, ReferenceLines};
 
 /// Which joints: `SEEDS=from..to`.
 fn seeds(or: core::ops::Range<u64>) -> core::ops::Range<u64> {
     let Ok(text) = std::env::var("SEEDS") else { return or };
     let (from, to) = text.split_once("..").expect("SEEDS=from..to");
     from.parse().unwrap()..to.parse().unwrap()
+}
+
+/// The marks of `strip16` in straight rows, as they would stand without their pattern.
+fn rows() -> ReferenceLines {
+    let marks = |axis, at_mm: &[f64], scans_mm: &[f64]| MarkGroup {
+        axis,
+        at_mm: at_mm.into(),
+        scans_mm: scans_mm.into(),
+    };
+    ReferenceLines {
+        schema: 1,
+        joint: Field::default().joint(),
+        marks: vec![
+            marks(Axis::Y, &[-34.0, -8.0, 18.0, 44.0, 70.0], &[-32.0, 2_032.0]),
+            marks(Axis::X, &[-10.0, 2_010.0], &[-21.0, 31.0, 57.0]),
+        ],
+    }
 }
 
 /// The axes across and along the joint, in which marks are known.
@@ -65,12 +84,23 @@ fn drawings(lines: &ReferenceLines) -> Vec<(&'static str, World)> {
         ("a stroke 3 mm beside the rows across", world(beside(lines, &[across], &[3.0], 0.0), 0.0)),
         ("the same on the other side", world(beside(lines, &[across], &[-3.0], 0.0), 0.0)),
         ("the same, 10 % missed", world(beside(lines, &[across], &[-3.0], 0.0), 0.1)),
+        ("a stroke 3 mm beside the rows along", world(beside(lines, &[along], &[-3.0], 0.0), 0.0)),
+        ("the same along, 10 % missed", world(beside(lines, &[along], &[-3.0], 0.0), 0.1)),
         ("strokes beside all, 60 % missed", world(beside(lines, &both, &[-3.0], 0.0), 0.6)),
         ("slanted strokes beside all, 30 % missed", world(beside(lines, &both, &[2.0], 1.5), 0.3)),
         ("hatching 5 mm apart across", world(beside(lines, &[across], &hatching(5.0), 0.0), 0.0)),
         ("hatching 5 mm apart everywhere", world(beside(lines, &both, &hatching(5.0), 0.0), 0.0)),
         ("hatching 2 mm apart everywhere", world(beside(lines, &both, &hatching(2.0), 0.0), 0.0)),
     ]
+}
+
+/// A stroke beside each row, each somewhere else and slanted otherwise.
+fn strokes_anywhere(lines: &ReferenceLines, missed: f64, seed: u64) -> World {
+    let mut chance = Chance::new(seed ^ 0x5EED);
+    let mut up_to = |most: f64| most * (2.0 * chance.unit() - 1.0);
+    let strokes =
+        axes(lines).map(|axis| Stroke::beside_each(lines, axis, || [up_to(8.0), up_to(4.0)])).concat();
+    World { strokes, missed, ..World::default() }
 }
 
 /// Copies of the marks themselves, the pattern too.
@@ -102,7 +132,7 @@ fn what_is_not_looked_for_is_found_by_the_judge() {
 
 #[test]
 fn pens_papers_and_heads_that_nobody_presumed_are_told_honestly() {
-    let lines = ReferenceLines::strip16().with_pattern();
+    let lines = ReferenceLines::strip16();
     for (what, world) in faults() {
         let tally = many(0..60, |seed| trial(&world, &lines, Pen::Seen, seed));
         // Marks beside the field show nothing of a bow between them: it stays in the middle of the joint, and
@@ -119,17 +149,23 @@ fn pens_papers_and_heads_that_nobody_presumed_are_told_honestly() {
 
 #[test]
 fn strokes_of_the_drawing_are_never_taken_for_marks() {
-    let (straight, pattern) = (ReferenceLines::strip16(), ReferenceLines::strip16().with_pattern());
+    let (straight, pattern) = (rows(), ReferenceLines::strip16());
     for lines in [&straight, &pattern] {
         for (what, world) in drawings(lines) {
             let tally = many(0..25, |seed| trial(&world, lines, Pen::Presumed, seed));
-            // One stroke beside straight rows with most marks missing is all that is seen of them once in a
-            // hundred times.
+            // Strokes beside straight rows with most marks missing are all that is seen once in a hundred
+            // times.
             assert!(
                 tally.wrong <= usize::from(what.contains("60 %") && lines == &straight),
                 "{what}: {tally}"
             );
         }
+    }
+    for missed in [0.0, 0.3] {
+        let tally = many(0..100, |seed| {
+            trial(&strokes_anywhere(&pattern, missed, seed), &pattern, Pen::Presumed, seed)
+        });
+        assert_eq!(tally.wrong, 0, "strokes anywhere, {missed} missed: {tally}");
     }
     // One stroke beside marks with a pattern stops nothing.
     let (what, world) = drawings(&pattern).swap_remove(0);
@@ -140,10 +176,11 @@ fn strokes_of_the_drawing_are_never_taken_for_marks() {
 #[test]
 #[ignore = "tables of docs/results/joints.md: some 800,000 joints, twenty minutes in release, by hand with the commands above"]
 fn tables() {
-    let (straight, lines) = (ReferenceLines::strip16(), ReferenceLines::strip16().with_pattern());
+    let (straight, lines) = (rows(), ReferenceLines::strip16());
+    let is_wanted = |what: &str| std::env::var("WORLD").map_or(true, |part| what.contains(&part));
     let wanted = |part: &str| std::env::var("TABLE").is_ok_and(|table| table == part);
     if wanted("faults") {
-        for (what, world) in faults() {
+        for (what, world) in faults().into_iter().filter(|(what, _)| is_wanted(what)) {
             for pen in [Pen::Presumed, Pen::Seen] {
                 let tally = many(seeds(0..2_000), |seed| trial(&world, &lines, pen, seed));
                 println!("{what:36} {pen:8?} {tally}");
@@ -152,9 +189,19 @@ fn tables() {
     }
     for (name, lines) in [("straight", &straight), ("pattern", &lines)] {
         if wanted(name) {
-            for (what, world) in drawings(lines).into_iter().chain(copies(lines)) {
+            let worlds = drawings(lines).into_iter().chain(copies(lines));
+            for (what, world) in worlds.filter(|(what, _)| is_wanted(what)) {
                 let tally = many(seeds(0..2_000), |seed| trial(&world, lines, Pen::Presumed, seed));
                 println!("{what:42} {name:8} {tally}");
+            }
+            for missed in [0.0, 0.1, 0.3] {
+                let what = format!("strokes anywhere beside all, {} % missed", 100.0 * missed);
+                if is_wanted(&what) {
+                    let tally = many(seeds(0..2_000), |seed| {
+                        trial(&strokes_anywhere(lines, missed, seed), lines, Pen::Presumed, seed)
+                    });
+                    println!("{what:42} {name:8} {tally}");
+                }
             }
         }
     }

@@ -172,10 +172,11 @@ fn a_frame_comes_out_in_order() {
     assert_eq!(done[0], PlotOp::SelectPen { pen: 2 });
     let pens = done.iter().filter(|op| matches!(op, PlotOp::SelectPen { .. })).count();
     assert_eq!((pens, done.len()), (2, 1 + 16 * 2 + 2));
-    // The first mark is looked for at (-32, -34), 950 mm before where it is drawn.
-    let [first, second] = [-40.0, -24.0].map(|x| report.drawn.to_machine(Point::new(x, 916.0)));
-    assert_eq!(done[1], PlotOp::Travel { to: first });
-    assert_eq!(done[2], PlotOp::Draw { to: second, feed_mm_s: None });
+    // The first mark is looked for at (-32, -36.925), 950 mm before where it is drawn.
+    let [first, second] = [-40.0, -24.0].map(|x| report.drawn.to_machine(Point::new(x, 950.0 - 36.925)));
+    let is_there = |op: PlotOp, place: Point| op.target().unwrap().distance(place) < 1e-9;
+    assert!(matches!(done[1], PlotOp::Travel { .. }) && is_there(done[1], first), "{:?}", done[1]);
+    assert!(matches!(done[2], PlotOp::Draw { .. }) && is_there(done[2], second), "{:?}", done[2]);
     let corner = report.drawn.to_machine(Point::new(110.0, 50.0));
     assert!(done[34].target().unwrap().distance(corner) < 1e-9);
 
@@ -185,7 +186,10 @@ fn a_frame_comes_out_in_order() {
         PlotOp::Draw { to: Point::new(-42.0, 950.0), feed_mm_s: None },
     ];
     let said = sheet.draw(None, || beside.into_iter()).map(|_| ()).map_err(refused).unwrap_err();
-    assert!(said.starts_with("there is no place for the mark y = -34 mm scanned at x = -32 mm"), "{said}");
+    assert!(
+        said.starts_with("there is no place for the mark y = -36.925 mm scanned at x = -32 mm"),
+        "{said}"
+    );
 }
 
 /// The end of a drawing made by chance: a frame around it, hatching of 5 mm somewhere, strokes anywhere.

@@ -7,13 +7,17 @@ use plotter_stitch::{Crossing, FitError, FrameTransform, JointEstimate, RigidFit
 
 /// The layout of `ReferenceLines::strip16`, without a heap.
 fn crossings() -> [Crossing; 16] {
+    // How far each mark is moved from its row, in steps of 0.65 mm: powers of 2 mod 11, less 5.5, and of 3 mod 7,
+    // less 3.5.
+    const MOVED: [f64; 16] =
+        [-4.5, -3.5, -1.5, 2.5, -0.5, 4.5, 3.5, 1.5, -2.5, 0.5, -2.5, -0.5, -1.5, 2.5, 0.5, 1.5];
     core::array::from_fn(|index| {
-        let (axis, mark_mm, scan_at_mm) = if index < 10 {
+        let (axis, row_mm, scan_at_mm) = if index < 10 {
             (Axis::Y, [-34.0, -8.0, 18.0, 44.0, 70.0][index / 2], [-32.0, 2032.0][index % 2])
         } else {
             (Axis::X, [-10.0, 2010.0][(index - 10) / 3], [-21.0, 31.0, 57.0][(index - 10) % 3])
         };
-        Crossing { axis, mark_mm, scan_at_mm }
+        Crossing { axis, mark_mm: row_mm + 0.65 * MOVED[index], scan_at_mm }
     })
 }
 

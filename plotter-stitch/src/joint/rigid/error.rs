@@ -61,6 +61,16 @@ pub enum FitError {
         /// At how many crossings.
         crossings: u32,
     },
+    /// Strokes of the drawing were seen beside the marks, and too few marks agree at one side of the field: a
+    /// stroke imitates two.
+    Strokes {
+        /// The direction of those scans.
+        axis: Axis,
+        /// How many agree at that side.
+        agree: u32,
+        /// Least number that would have to agree.
+        least: u32,
+    },
     /// The crossings that are left lie so that they do not tell shift and rotation.
     Geometry {
         /// How many agree.
@@ -82,8 +92,18 @@ pub enum FitError {
         /// The farthest that is taken, mm.
         most_mm: f64,
     },
-    /// The marks at both ends lie farther apart or nearer than they were drawn: the paper has swollen, or it
-    /// has folded between them, and they do not tell which.
+    /// The marks at both ends lie nearer to each other than they were drawn, or may do so for all that is
+    /// known: the paper has shrunk, or it has folded between them, and they do not tell which.
+    Shrunk {
+        /// By how much of their distance at the most.
+        shrunk: f64,
+        /// How far an end of the joint may be off if that is a fold, mm.
+        effect_mm: f64,
+        /// The farthest that is taken, mm.
+        most_mm: f64,
+    },
+    /// Strokes of the drawing were seen beside the marks, and the paper would have swollen or shrunk: at one
+    /// side they may have been taken for marks.
     Swollen {
         /// What the swelling would be; negative where the paper has shrunk.
         swelling: f64,
@@ -137,6 +157,12 @@ impl fmt::Display for FitError {
                  the marks, or give the marks a pattern",
                 name(*axis)
             ),
+            Self::Strokes { axis, agree, least } => write!(
+                f,
+                "along {} strokes of the drawing were seen beside the marks, and only {agree} marks agree at one side of the \
+                 field, at least {least} are needed there; keep strokes off the marks",
+                name(*axis)
+            ),
             Self::Geometry { agree } => write!(
                 f,
                 "the {agree} crossings that agree do not tell shift and rotation; marks along both axes and far apart are needed"
@@ -157,10 +183,18 @@ impl fmt::Display for FitError {
                 "too little checks crossing {crossing}: if it is wrong the joint may be off by {effect_mm:.3} mm, {most_mm} mm \
                  are taken; scan more marks"
             ),
+            Self::Shrunk { shrunk, effect_mm, most_mm } => write!(
+                f,
+                "the marks at both ends may lie {:.3} % nearer to each other than they were drawn: if the paper has folded between \
+                 them, an end of the joint is off by {effect_mm:.2} mm, {most_mm} mm are taken; look at the paper, and measure \
+                 anew as flat if there is no fold",
+                100.0 * shrunk
+            ),
             Self::Swollen { swelling, effect_mm, most_mm } => write!(
                 f,
-                "the marks at both ends lie {:.3} % farther apart than they were drawn, and an end of the joint may be off by \
-                 {effect_mm:.2} mm, {most_mm} mm are taken; look for a fold between them, or wait until the paper has settled",
+                "strokes of the drawing were seen beside the marks, and marks lie as if the paper had swollen by {:.3} %: if \
+                 these are strokes, an end of the joint is off by {effect_mm:.2} mm, {most_mm} mm are taken; keep strokes off \
+                 the marks",
                 100.0 * swelling
             ),
             Self::Angle { angle_rad, most_rad } => write!(

@@ -12,7 +12,7 @@ use crate::{Crossing, Field, FrameTransform, marks::MOST_CROSSINGS, sense::Found
 use distortion::{Distortion, PRIOR_RESIDUALS, Ways};
 use equations::{Pose, Row, Solution, in_radians, moved_by, single, solve};
 use plotter_motion::{Axis, Point, Vec2};
-use rival::rival;
+use rival::{LEAST_BESIDE_STROKES, rival, strokes, too_few_beside};
 
 /// Farthest place, mm: a kilometre, larger than any machine. No product below overflows up to there.
 const FARTHEST_MM: f64 = 1e6;
@@ -93,10 +93,13 @@ pub struct RigidFit {
     /// Greatest standard deviation at an end of the joint, mm.
     pub most_sigma_mm: f64,
     /// How far the joint may be off by one place that is just not sorted out, or by a fold that is taken for
-    /// swelling, mm.
+    /// shrinking, mm.
     pub most_unseen_mm: f64,
     /// Greatest rotation that is believed, rad.
     pub greatest_angle_rad: f64,
+    /// Whether somebody has looked and seen no fold between the marks: then marks that lie nearer to each
+    /// other than they were drawn show how far the paper has shrunk.
+    pub is_flat: bool,
 }
 
 impl Default for RigidFit {
@@ -116,6 +119,7 @@ impl Default for RigidFit {
             most_sigma_mm: 0.05,
             most_unseen_mm: 0.25,
             greatest_angle_rad: 0.01,
+            is_flat: false,
         }
     }
 }
@@ -230,11 +234,15 @@ impl RigidFit {
         if libm::fabs(angle_rad) > self.greatest_angle_rad {
             return Err(FitError::Angle { angle_rad, most_rad: self.greatest_angle_rad });
         }
-        if inliers != all(rows)
-            && let Some((axis, crossings)) =
-                rival(rows, inliers, &residuals_mm, agree, single(self.greatest_angle_rad))
-        {
-            return Err(FitError::Ambiguous { axis, crossings });
+        let strokes = strokes(rows, &residuals_mm);
+        if inliers != all(rows) {
+            let turn = single(self.greatest_angle_rad);
+            if let Some((axis, crossings)) = rival(rows, inliers, &residuals_mm, agree, turn) {
+                return Err(FitError::Ambiguous { axis, crossings });
+            }
+            if let Some((axis, agree)) = too_few_beside(rows, inliers, self.joint, strokes) {
+                return Err(FitError::Strokes { axis, agree, least: LEAST_BESIDE_STROKES });
+            }
         }
         let scale = scale(&solution, &distortion);
         let geometry = FitError::Geometry { agree: agree[0] + agree[1] };
@@ -254,11 +262,17 @@ impl RigidFit {
                 return Err(FitError::Unsure { sigma_mm, most_mm: self.most_sigma_mm });
             }
         }
-        // A fold between the marks at both ends looks as if the paper had shrunk.
-        let half_mm = 0.5 * self.joint[0].distance(self.joint[1]);
-        let effect_mm = half_mm * (libm::fabs(swelling) + SURE * distortion.sigma_swelling());
-        if effect_mm > self.most_unseen_mm {
-            return Err(FitError::Swollen { swelling, effect_mm, most_mm: self.most_unseen_mm });
+        // A fold between the marks at both ends takes up paper, which looks as if it had shrunk.
+        let sure = SURE * distortion.sigma_swelling();
+        let moved_mm = |by: f64| 0.5 * self.joint[0].distance(self.joint[1]) * by.max(0.0);
+        let (shrunk, most_mm) = ((sure - swelling).max(0.0), self.most_unseen_mm);
+        if moved_mm(shrunk) > most_mm && !self.is_flat {
+            return Err(FitError::Shrunk { shrunk, effect_mm: moved_mm(shrunk), most_mm });
+        }
+        // A stroke at one side may stand where that side's marks would if the paper had swollen.
+        let swollen = libm::fabs(swelling) + sure;
+        if moved_mm(swollen) > most_mm && strokes != [0; 2] {
+            return Err(FitError::Swollen { swelling, effect_mm: moved_mm(swollen), most_mm });
         }
         Ok(estimate)
     }

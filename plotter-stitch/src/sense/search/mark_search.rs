@@ -3,7 +3,7 @@
 use super::{Ask, Search, SearchError, line_width, place, shown_delays};
 use crate::sense::crossing::{Delays, places};
 use crate::{
-    Crossing, FindLine, Optics, RigidFit, Sighting,
+    Crossing, FindLine, FrameTransform, Optics, RigidFit, Sighting,
     sense::{BothEdges, Found, Passed, Tact},
 };
 use alloc::vec;
@@ -57,8 +57,9 @@ impl Default for SearchSettings {
 
 /// Looks for the mark of each crossing: a fast pass over all windows, then, at each crossing, slow passes
 /// forth and back over what lies where most of what was seen has the sheet. Where the fast passes do not
-/// tell, whatever they saw nearest to the expected places is visited. A mark that is not found is left out;
-/// the others will do.
+/// tell, whatever they saw nearest to the expected places is visited. Slow passes may tell another place of
+/// the sheet: what lies there and was not visited is visited then. A mark that is not found is left out; the
+/// others will do.
 ///
 /// Width of the line and the head's delays are taken from what was seen, not from the settings: see
 /// [`found`](Self::found).
@@ -77,6 +78,8 @@ pub struct MarkSearch {
     passed: Vec<Vec<Passed>>,
     /// Where each is to be visited slowly, mm; none where nothing lies.
     to_visit_mm: Vec<Option<f64>>,
+    /// Whether these are what the slow passes told to visit.
+    is_second_round: bool,
     found: Vec<Found>,
     found_crossings: usize,
     first_missed: Option<usize>,
@@ -106,6 +109,7 @@ impl MarkSearch {
             edges: BothEdges::with_span(&settings.optics, settings.fast_mm_s, span_mm),
             passed: vec![Vec::new(); crossings.len()],
             to_visit_mm: Vec::new(),
+            is_second_round: false,
             found: Vec::with_capacity(crossings.len()),
             found_crossings: 0,
             first_missed: None,
@@ -169,46 +173,78 @@ impl MarkSearch {
             self.to_visit_mm = self.visits();
             self.at = 0;
         }
-        while let Some(visit) = self.to_visit_mm.get(self.at) {
-            if let Some(about_mm) = *visit {
-                self.step = Step::SlowTravel { about_mm };
-                return;
-            }
-            self.at += 1;
+        if self.go_to_visit() {
+            return;
         }
         self.tell();
+        if !core::mem::replace(&mut self.is_second_round, true) {
+            self.to_visit_mm = self.second_visits();
+            self.at = 0;
+            if self.go_to_visit() {
+                return;
+            }
+        }
+        self.count_found();
         self.step = Step::Done;
     }
 
+    /// On to the next crossing that is to be visited, if there is one.
+    fn go_to_visit(&mut self) -> bool {
+        while let Some(visit) = self.to_visit_mm.get(self.at) {
+            if let Some(about_mm) = *visit {
+                self.step = Step::SlowTravel { about_mm };
+                return true;
+            }
+            self.at += 1;
+        }
+        false
+    }
+
     /// What is visited slowly at each crossing.
-    fn visits(&mut self) -> Vec<Option<f64>> {
-        line_width::judge(&mut self.passed, &self.settings, self.span_mm);
-        let delays = Delays::known(&self.settings.optics);
-        let fast: Vec<Found> = self.places(delays);
-        // Only where the sheet lies is asked for, as well as the fast passes know it.
-        let rough =
-            RigidFit { most_sigma_mm: f64::INFINITY, most_unseen_mm: f64::INFINITY, ..RigidFit::default() };
-        let sheet = rough.estimate(&self.crossings, &fast);
-        let visit = |(index, crossing): (usize, &Crossing)| {
-            let (about_mm, within_mm) = match &sheet {
-                Ok(sheet) => (crossing.place_mm(&sheet.transform), NEAR_MM),
-                Err(_) => (crossing.mark_mm, f64::INFINITY),
-            };
-            let off = |at_mm: f64| libm::fabs(at_mm - about_mm);
-            let seen = fast.iter().filter(|place| place.crossing == index).map(|place| place.at_mm);
-            let nearest = seen.min_by(|one, other| off(*one).total_cmp(&off(*other)));
-            nearest.filter(|at_mm| off(*at_mm) <= within_mm)
+    fn visits(&self) -> Vec<Option<f64>> {
+        let fast = self.places(Delays::known(&self.settings.optics), &self.judged());
+        let sheet = self.rough_sheet(&fast);
+        let visit = |(index, crossing): (usize, &Crossing)| match &sheet {
+            Some(sheet) => nearest(&fast, index, crossing.place_mm(sheet), NEAR_MM),
+            None => nearest(&fast, index, crossing.mark_mm, f64::INFINITY),
         };
         self.crossings.iter().enumerate().map(visit).collect()
     }
 
+    /// What lies where the slow passes have the sheet, and was seen by a fast pass alone.
+    fn second_visits(&self) -> Vec<Option<f64>> {
+        let Some(sheet) = self.rough_sheet(&self.found) else { return Vec::new() };
+        let visit = |(index, crossing): (usize, &Crossing)| {
+            let at_mm = nearest(&self.found, index, crossing.place_mm(&sheet), NEAR_MM)?;
+            let visited_mm = self.to_visit_mm.get(index).copied().flatten();
+            visited_mm.is_none_or(|mm| libm::fabs(mm - at_mm) > NEAR_MM).then_some(at_mm)
+        };
+        self.crossings.iter().enumerate().map(visit).collect()
+    }
+
+    /// Where the sheet lies, as well as what was found so far knows it.
+    fn rough_sheet(&self, found: &[Found]) -> Option<FrameTransform> {
+        let rough =
+            RigidFit { most_sigma_mm: f64::INFINITY, most_unseen_mm: f64::INFINITY, ..RigidFit::default() };
+        rough.estimate(&self.crossings, found).ok().map(|sheet| sheet.transform)
+    }
+
+    /// All passes, with what is a line among what they saw.
+    fn judged(&self) -> Vec<Vec<Passed>> {
+        let mut passed = self.passed.clone();
+        line_width::judge(&mut passed, &self.settings, self.span_mm);
+        passed
+    }
+
     /// What all passes have told.
     fn tell(&mut self) {
-        line_width::judge(&mut self.passed, &self.settings, self.span_mm);
+        let passed = self.judged();
         let SearchSettings { optics, fast_mm_s, slow_mm_s, .. } = &self.settings;
-        let delays =
-            shown_delays::shown(optics, *fast_mm_s, *slow_mm_s, self.passed.iter().map(Vec::as_slice));
-        self.found = self.places(delays);
+        let delays = shown_delays::shown(optics, *fast_mm_s, *slow_mm_s, passed.iter().map(Vec::as_slice));
+        self.found = self.places(delays, &passed);
+    }
+
+    fn count_found(&mut self) {
         for crossing in 0..self.crossings.len() {
             if self.found.iter().any(|place| place.crossing == crossing) {
                 self.found_crossings += 1;
@@ -218,10 +254,18 @@ impl MarkSearch {
         }
     }
 
-    fn places(&self, delays: Delays) -> Vec<Found> {
-        let passed = self.passed.iter().enumerate();
+    fn places(&self, delays: Delays, passed: &[Vec<Passed>]) -> Vec<Found> {
+        let passed = passed.iter().enumerate();
         passed.flat_map(|(crossing, passed)| places(crossing, delays, passed)).collect()
     }
+}
+
+/// Of what was found at a crossing, the nearest to a place and within a distance of it, mm.
+fn nearest(found: &[Found], crossing: usize, about_mm: f64, within_mm: f64) -> Option<f64> {
+    let off = |at_mm: f64| libm::fabs(at_mm - about_mm);
+    let seen = found.iter().filter(|place| place.crossing == crossing).map(|place| place.at_mm);
+    let nearest = seen.min_by(|one, other| off(*one).total_cmp(&off(*other)));
+    nearest.filter(|at_mm| off(*at_mm) <= within_mm)
 }
 
 impl Search for MarkSearch {

@@ -30,6 +30,11 @@ impl Stroke {
     /// Straight strokes beside the marks of one axis, one beside each row of them: from beyond the first to
     /// beyond the last, and farther from them by `slant_mm` at their end.
     pub fn beside(lines: &ReferenceLines, axis: Axis, beside_mm: f64, slant_mm: f64) -> Vec<Self> {
+        Self::beside_each(lines, axis, || [beside_mm, slant_mm])
+    }
+
+    /// The same with a distance and a slant for each row.
+    pub fn beside_each(lines: &ReferenceLines, axis: Axis, mut by_mm: impl FnMut() -> [f64; 2]) -> Vec<Self> {
         // Marks within this distance are one row, whatever pattern they have in it, mm.
         const ROW_MM: f64 = 14.0;
         let mut rows: Vec<Vec<Crossing>> = Vec::new();
@@ -40,6 +45,7 @@ impl Stroke {
             }
         }
         let stroke = |row: &Vec<Crossing>| {
+            let [beside_mm, slant_mm] = by_mm();
             let at_mm =
                 row.iter().map(|crossing| crossing.mark_mm).sum::<f64>() / row.len() as f64 + beside_mm;
             let scans = row.iter().map(|crossing| crossing.scan_at_mm);
