@@ -74,7 +74,7 @@ pub struct TraceCommand {
     #[arg(long, value_enum, value_name = "WHAT")]
     pub(super) ruling: Option<RulingChoice>,
     /// Joins strokes that go on in each other beyond a gap of so much, mm on the sheet (ours only) [default:
-    /// none; of pencil and chalk three widths of the lines]
+    /// none; of pencil and chalk three widths of the lines, of a photograph two]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub(super) gap: Option<f64>,
     /// Leaves out strokes that are shorter, mm on the sheet (ours only); 0 says that thousands of dots are
