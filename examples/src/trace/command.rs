@@ -76,7 +76,7 @@ pub struct TraceCommand {
     #[arg(long, value_enum, value_name = "WHAT")]
     pub(super) ruling: Option<RulingChoice>,
     /// Joins strokes across gaps up to this length if one continues the other, mm on the sheet (ours
-    /// only) [default: none; for pencil and chalk three line widths]
+    /// only) [default: none; for pencil and chalk three line widths, for photographs two]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub(super) gap: Option<f64>,
     /// Leaves out strokes shorter than this, mm on the sheet (ours only); 0 accepts a picture of

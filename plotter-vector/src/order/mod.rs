@@ -7,6 +7,7 @@
 //! ```
 
 mod chains;
+mod drawn_ways;
 pub(crate) mod lettering;
 mod near_nodes;
 mod on_sheet;
@@ -26,6 +27,7 @@ use plan::{Legs, Stroke, Trail, all_vertices, rebuild, strokes_of};
 use ring_start::start_rings_well;
 use search::shorten;
 use sites::{RING_PLACES, Sites, Stop, number};
+use trails::Joining;
 use units::{Units, mark_letters};
 
 /// Greatest coordinate of a drawing that is ordered, px: squares of distances stay far from infinity.
@@ -132,7 +134,17 @@ impl Order {
     /// The drawing in an order with less travel. See [`Order`] for what is kept.
     #[must_use]
     pub fn apply(&self, drawing: &Drawing) -> Drawing {
-        self.apply_over_corners(drawing, self.corner_gap_px())
+        self.applied(drawing, self.joining())
+    }
+
+    /// Which ends are joined.
+    fn joining(&self) -> Joining {
+        Joining {
+            gap_px: self.merge_gap_px,
+            one_stroke: self.one_stroke,
+            corner_gap_px: self.corner_gap_px(),
+            pen_px: 0.0,
+        }
     }
 
     /// Within what ends are joined at any angle, px.
@@ -140,8 +152,13 @@ impl Order {
         if self.bridges_corners { self.merge_gap_px } else { 0.0 }
     }
 
-    /// The same, with the ends that are left joined at any angle within `corner_gap_px`.
-    pub(crate) fn apply_over_corners(&self, drawing: &Drawing, corner_gap_px: f64) -> Drawing {
+    /// The same of strokes by a pen so wide: of the ends that are left those are joined, at any angle, that
+    /// it overlaps, and those between which it has drawn all of the way.
+    pub(crate) fn apply_to_ink(&self, drawing: &Drawing, pen_px: f64) -> Drawing {
+        self.applied(drawing, Joining { corner_gap_px: pen_px, pen_px, ..self.joining() })
+    }
+
+    fn applied(&self, drawing: &Drawing, joining: Joining) -> Drawing {
         if self.effort == OrderEffort::None {
             return drawing.clone();
         }
@@ -153,7 +170,7 @@ impl Order {
             None => Vec::new(),
         };
         mark_letters(&mut strokes, &blocks);
-        let (legs, trails) = self.plan(&strokes, &blocks, None, corner_gap_px);
+        let (legs, trails) = self.plan(&strokes, &blocks, None, joining);
         rebuild(drawing, &legs, &trails)
     }
 
@@ -164,13 +181,11 @@ impl Order {
         strokes: &'a [Stroke<'a>],
         blocks: &[TextBlock],
         given_px: Option<f64>,
-        corner_gap_px: f64,
+        joining: Joining,
     ) -> (Legs<'a>, Vec<Trail>) {
         if !strokes.iter().all(is_within) {
             return as_given(strokes, &[], self.across_pens);
         }
-        let joining =
-            trails::Joining { gap_px: self.merge_gap_px, one_stroke: self.one_stroke, corner_gap_px };
         let (legs, joined) = trails::trails(strokes, &joining);
         let units = Units::new(&legs, joined, blocks);
         if self.effort == OrderEffort::Join {
@@ -410,7 +425,7 @@ fn as_given<'a>(
 mod tests {
     use super::*;
 
-    const JOINING: trails::Joining = trails::Joining { gap_px: 0.5, one_stroke: true, corner_gap_px: 0.0 };
+    const JOINING: Joining = Joining { gap_px: 0.5, one_stroke: true, corner_gap_px: 0.0, pen_px: 0.0 };
 
     fn line(from: f64, to: f64) -> [PxPoint; 2] {
         [PxPoint::new(from, 0.0), PxPoint::new(to, 0.0)]

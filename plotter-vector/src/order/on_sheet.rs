@@ -72,7 +72,7 @@ impl Order {
                 *groups.entry((0, 0, Some(next))).or_insert(next)
             };
         }
-        let (legs, mut trails) = self.plan(&strokes, &[], Some(given_px), self.corner_gap_px());
+        let (legs, mut trails) = self.plan(&strokes, &[], Some(given_px), self.joining());
         let all = legs.in_given_numbers(&mut trails);
         // What was needed for the search is given free before the answer is built.
         drop(strokes);

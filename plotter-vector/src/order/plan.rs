@@ -5,6 +5,7 @@
 use super::sites::{NONE, number};
 use crate::stroke::curve::{CHORD_ERROR_PX, Course, unit};
 use crate::stroke::{Curve, Drawing, PxPoint, PxVec};
+use std::borrow::Cow;
 
 /// Way along a stroke over which the direction of its end is taken, px: enough for one stair of a gentle
 /// slope.
@@ -58,6 +59,11 @@ impl<'a> Stroke<'a> {
     pub(crate) fn outward(&self) -> [PxVec; 2] {
         let places = self.drawing.stroke_chords(self.index as usize, CHORD_ERROR_PX);
         [outward(places.iter()), outward(places.iter().rev())]
+    }
+
+    /// Its vertices, and where it bends places between them.
+    pub(crate) fn chords(&self) -> Cow<'a, [PxPoint]> {
+        self.drawing.stroke_chords(self.index as usize, CHORD_ERROR_PX)
     }
 
     /// Numbers of its first and its last vertex among those of the whole drawing.

@@ -115,7 +115,8 @@ pub struct Vectorizer {
     /// Ours: how areas are drawn.
     pub areas: Areas,
     /// Ours: strokes that go on in each other beyond a gap of so much become one, px; `None` for three widths
-    /// of the lines where strokes have grain and gaps, and nowhere else.
+    /// of the lines where strokes have grain and gaps, two in other pictures whose ink no single level tells,
+    /// and nothing in others.
     pub gap_px: Option<f64>,
     /// Ours: strokes shorter than this are left out, px; 0 for none.
     pub min_stroke_px: f64,
@@ -180,8 +181,11 @@ pub struct Vectorized {
 /// inch, take 6 s and 0.9 GB.
 pub const MAX_INK_PIXELS: u64 = 1 << 25;
 
-/// Gaps in strokes with grain that are drawn over, in widths of the lines.
-const GAP_WIDTHS: f64 = 3.0;
+/// From end to end of a gap that is drawn over in a picture that is evened, in widths of the lines: in strokes
+/// with grain, and in others, where a ball pen skips. A pen's dashes have more than a width of paper between
+/// them, so their ends, half a width inside of the ink, are farther apart.
+const GRAIN_GAP_WIDTHS: f64 = 3.0;
+const SKIP_WIDTHS: f64 = 2.0;
 
 impl Vectorizer {
     /// Vectorizes a picture. An empty sheet (one level, no contrast, no pixels) gives an empty drawing.
@@ -216,8 +220,8 @@ impl Vectorizer {
         let (evened, threshold) = self.threshold.evened(gray)?;
         // The rims of what a camera or a pencil made are ragged: ink that is bare there is worth no stroke.
         let prefer = if self.prefer == Prefer::Both { Prefer::Strokes } else { self.prefer };
-        let of_grain = evened.look.broken.then(|| GAP_WIDTHS * f64::from(evened.look.line_px));
-        let gap_px = self.gap_px.or(of_grain);
+        let widths = if evened.look.broken { GRAIN_GAP_WIDTHS } else { SKIP_WIDTHS };
+        let gap_px = self.gap_px.or(Some(widths * f64::from(evened.look.line_px)));
         Some((evened, Self { threshold, prefer, gap_px, ..*self }))
     }
 
@@ -316,8 +320,9 @@ impl Vectorizer {
     }
 
     /// The strokes of ours joined over gaps, without short ones, and in their order. What is left out makes
-    /// errors that are no longer known. Strokes end to end are one where a pen as wide as the thinnest
-    /// line that ends the one overlaps with one that begins the other: there is no paper between.
+    /// errors that are no longer known. Strokes are one where a pen as wide as the thinnest line that ends
+    /// the one overlaps with one that begins the other, or comes to it over what is drawn: there is no paper
+    /// between.
     pub(crate) fn in_order(
         &self,
         mut drawing: Drawing,
@@ -335,8 +340,12 @@ impl Vectorizer {
             drawing = without_short(drawing, self.min_stroke_px);
             errors = None;
         }
-        let corner_gap_px = if thinnest_px > 1 { f64::from(thinnest_px) } else { 0.0 };
-        (self.order.apply_over_corners(&drawing, corner_gap_px), errors)
+        let ordered = if thinnest_px > 1 {
+            self.order.apply_to_ink(&drawing, f64::from(thinnest_px))
+        } else {
+            self.order.apply(&drawing)
+        };
+        (ordered, errors)
     }
 
     /// Whether strokes are added for what is bare.

@@ -64,14 +64,8 @@ fn picture(level: impl Fn(u32, u32) -> f64) -> Gray {
         .unwrap()
 }
 
-/// Traces it, whole and by rows, which must be the same, and asks for all of the lines, for nothing else, and
-/// for about as many strokes as were drawn.
-fn assert_found(name: &str, gray: Gray) -> Vectorized {
-    let found = Vectorizer::default().vectorize(&gray).unwrap();
-    let by_rows =
-        Vectorizer::default().vectorize_rows(&mut GrayRows::new(gray), &mut Progress::silent()).unwrap();
-    assert_eq!((&by_rows.drawing, by_rows.look), (&found.drawing, found.look), "{name}");
-    let strokes: Vec<Vec<PxPoint>> = found.drawing.strokes().map(<[PxPoint]>::to_vec).collect();
+/// How much of some strokes lies near others.
+fn share_near(of: &[Vec<PxPoint>], near: &[Vec<PxPoint>]) -> f64 {
     let steps = |stroke: &Vec<PxPoint>| -> Vec<PxPoint> {
         let along = |pair: &[PxPoint]| {
             let (from, way) = (pair[0], pair[1] - pair[0]);
@@ -82,11 +76,23 @@ fn assert_found(name: &str, gray: Gray) -> Vectorized {
         stroke.windows(2).flat_map(along).collect()
     };
     // Places of pixels have their middle at .5 on both sides.
-    let share_near = |of: &[Vec<PxPoint>], near: &[Vec<PxPoint>]| {
-        let places: Vec<PxPoint> = of.iter().flat_map(steps).collect();
-        let close = places.iter().filter(|at| far(**at, near) <= 1.5).count();
-        close as f64 / places.len().max(1) as f64
-    };
+    let places: Vec<PxPoint> = of.iter().flat_map(steps).collect();
+    let close = places.iter().filter(|at| far(**at, near) <= 1.5).count();
+    close as f64 / places.len().max(1) as f64
+}
+
+fn strokes_of(found: &Vectorized) -> Vec<Vec<PxPoint>> {
+    found.drawing.strokes().map(<[PxPoint]>::to_vec).collect()
+}
+
+/// Traces it, whole and by rows, which must be the same, and asks for all of the lines, for nothing else, and
+/// for about as many strokes as were drawn.
+fn assert_found(name: &str, gray: Gray) -> Vectorized {
+    let found = Vectorizer::default().vectorize(&gray).unwrap();
+    let by_rows =
+        Vectorizer::default().vectorize_rows(&mut GrayRows::new(gray), &mut Progress::silent()).unwrap();
+    assert_eq!((&by_rows.drawing, by_rows.look), (&found.drawing, found.look), "{name}");
+    let strokes = strokes_of(&found);
     let (recall, precision) = (share_near(&lines(), &strokes), share_near(&strokes, &lines()));
     assert!(recall >= 0.98 && precision >= 0.97, "{name}: recall {recall:.3}, precision {precision:.3}");
     assert!((3..=6).contains(&strokes.len()), "{name}: {} strokes", strokes.len());
@@ -107,6 +113,39 @@ fn faint_lines_are_found_and_an_empty_sheet_with_the_same_noise_stays_empty() {
     assert!(found.look.is_some_and(|look| (10.0..30.0).contains(&look.ink_levels)), "{:?}", found.look);
     let nothing = Vectorizer::default().vectorize(&picture(paper)).unwrap();
     assert_eq!((nothing.drawing.strokes().len(), nothing.split), (0, None));
+}
+
+#[test]
+fn close_hatching_of_faint_lines_is_not_taken_for_noise() {
+    let steps = |first: u32, end: u32| (first..end).step_by(13).map(f64::from);
+    let at = |x: f64, y: f64| PxPoint::new(x, y);
+    let across = steps(30, 330).map(|y| vec![at(60.0, y), at(390.0, y)]);
+    let down = steps(60, 391).map(|x| vec![at(x, 30.0), at(x, 329.0)]);
+    let hatching: Vec<Vec<PxPoint>> = across.chain(down).collect();
+    let level = |x: u32, y: u32| {
+        let far = far(at(f64::from(x) + 0.5, f64::from(y) + 0.5), &hatching);
+        228.0 - 18.0 * (2.0 - far).clamp(0.0, 1.0) + 2.5 * noise(x, y)
+    };
+    // Beside it is as much paper without lines.
+    let places = (0..360).flat_map(|y| (0..900).map(move |x| (x, y)));
+    let levels = places.map(|(x, y)| level(x, y).round().clamp(0.0, 255.0) as u8).collect();
+    let found = Vectorizer::default().vectorize(&Gray::new(900, 360, levels).unwrap()).unwrap();
+    let (recall, precision) =
+        (share_near(&hatching, &strokes_of(&found)), share_near(&strokes_of(&found), &hatching));
+    assert!(recall >= 0.98 && precision >= 0.97, "recall {recall:.3}, precision {precision:.3}");
+}
+
+#[test]
+fn the_edge_of_a_shadow_across_the_drawing_is_no_edge_of_the_sheet() {
+    // A hand's, over a third of the paper; its edge is as soft as a lamp is wide.
+    let light = |x: u32, y: u32| {
+        let into = (f64::from(x) + 0.4 * f64::from(y) - 340.0) / 5.0;
+        1.0 - 0.45 / (1.0 + (-into).exp())
+    };
+    let level =
+        |x: u32, y: u32| light(x, y) * (230.0 - 180.0 * covered(x.into(), y.into(), 4.0)) + 2.0 * noise(x, y);
+    let found = assert_found("shadow", picture(level));
+    assert_eq!(found.look.map(|look| look.sheet), Some(None));
 }
 
 #[test]
@@ -185,6 +224,8 @@ fn what_lies_beside_the_sheet_is_no_ink() {
         }
     };
     let found = assert_found("on a table", picture(level));
+    // What is beside it has no say in what paper and lines are.
+    assert!(found.look.is_some_and(|look| !look.broken && look.noise_levels < 3.0), "{:?}", found.look);
     let corners = found.look.and_then(|look| look.sheet).unwrap();
     let expected = [(20.0, 25.0), (400.0, 25.0), (400.0, 335.0), (20.0, 335.0)];
     for ((x, y), (true_x, true_y)) in corners.into_iter().zip(expected) {

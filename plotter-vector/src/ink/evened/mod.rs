@@ -35,7 +35,7 @@ use crate::ink::{Polarity, pen_width_px};
 use crate::picture::runs::ink_runs;
 use crate::picture::{Bitmap, Gray, Pixel};
 pub use look::Look;
-use paper::Paper;
+use paper::{DARKEST_PAPER, Paper};
 use parts::{Part, Parts};
 use plane::{LEVEL, Plane, WHITE, mean, rounded, whole};
 use ridges::Ridges;
@@ -119,7 +119,8 @@ impl Evened {
     pub(crate) fn of(gray: &Gray, polarity: Polarity, keeps_pale: bool) -> Self {
         let (width, height) = (gray.width() as usize, gray.height() as usize);
         let mut smooth = Plane::smoothed(gray, FIRST_SIGMA_PX, false);
-        let sheet = SheetEdge::of(&smooth);
+        let seen_sheet = SheetEdge::of(&smooth);
+        let sheet = seen_sheet.filter(|sheet| !sheet.may_be_shadow());
         let light_ink = match polarity {
             Polarity::Minority => side::ink_is_light(&smooth),
             Polarity::DarkInk => false,
@@ -129,9 +130,9 @@ impl Evened {
             smooth.in_rows(|_, row| row.iter_mut().for_each(|value| *value = WHITE.saturating_sub(*value)));
         }
         let first_reach = (width.min(height) / FIRST_REACH).max(LEAST_REACH_PX);
-        let (first, paper) = darkness(smooth, first_reach);
+        let (first, paper) = darkness(smooth, first_reach, sheet);
         let mut look = Look { light_ink, noise_levels: paper.usual_noise / LEVEL, ..Look::default() };
-        look.sheet = sheet.map(|sheet| sheet.corners);
+        look.sheet = seen_sheet.map(|sheet| sheet.corners);
         let Some(ridges) = Ridges::of(&first, &paper, keeps_pale) else { return Self::empty(gray, look) };
         look.ink_levels = ridges.ink / LEVEL;
         let evenness = Evenness::of(gray);
@@ -141,12 +142,14 @@ impl Evened {
 
         let sure = Sure { noise: OUT_OF_NOISE, darkness: HALF * ridges.ink };
         let sure_ink = sure.ink(&first, &paper, 3);
+        let sheet = seen_sheet.filter(|sheet| !(sheet.may_be_shadow() && sheet.has_ink_beside(&sure_ink)));
+        look.sheet = sheet.map(|sheet| sheet.corners);
         let (pen_px, ink_pixels) = (pen_width_px(&sure_ink).unwrap_or(3), sure_ink.count());
         drop((first, sure_ink));
         let mut width_px = px(pen_px);
         let reach = (REACH_WIDTHS * pen_px as usize).clamp(LEAST_REACH_PX, first_reach);
         let sigma_px = (SIGMA_OF_WIDTH * width_px).clamp(*SIGMA_PX.start(), *SIGMA_PX.end());
-        let (mut dark, mut paper) = darkness(Plane::smoothed(gray, sigma_px, light_ink), reach);
+        let (mut dark, mut paper) = darkness(Plane::smoothed(gray, sigma_px, light_ink), reach, sheet);
         let sure = Sure { noise: 0.0, darkness: ridges.least_ink().max(SURE_INK * ridges.ink) };
         let pieces = |dark: &Plane, paper: &Paper| {
             let ink = sure.ink(dark, paper, pen_px as usize / 2 + 1);
@@ -158,10 +161,11 @@ impl Evened {
         drop(blurred);
         if look.broken {
             drop(dark); // its memory is needed
-            let (rough, rough_paper) = darkness(Plane::smoothed(gray, ROUGH_SIGMA_PX, light_ink), reach);
+            let smooth = Plane::smoothed(gray, ROUGH_SIGMA_PX, light_ink);
+            let (rough, rough_paper) = darkness(smooth, reach, sheet);
             loop {
                 dark = oriented::along_lines(&rough, width_px, OUT_OF_NOISE * rough_paper.usual_noise);
-                paper = Paper::of(&dark);
+                paper = rough_paper.again(&dark, sheet);
                 paper.take_from(&mut dark);
                 // What lay in pieces seemed narrower than it is.
                 let whole_px = pen_width_px(&sure.ink(&dark, &paper, pen_px as usize / 2 + 1));
@@ -204,12 +208,10 @@ impl Evened {
 }
 
 /// How much darker each place is than the paper there, as a share of 255 levels, and what is left of the
-/// paper.
-fn darkness(smooth: Plane, reach_px: usize) -> (Plane, Paper) {
+/// paper. Beside the sheet, where that is known, nothing is dark.
+fn darkness(smooth: Plane, reach_px: usize, sheet: Option<SheetEdge>) -> (Plane, Paper) {
     /// The closing's own steps are smoothed so much, of half as many pixels.
     const STEPS_PX: f32 = 1.5;
-    /// Paper is never darker than this, levels.
-    const DARKEST_PAPER: f32 = 8.0;
     /// Paper may be lighter than the closing says by so many levels, which its noise needs to be measured.
     const LIGHTER: f32 = 16.0;
     let radius = reach_px.div_ceil(2);
@@ -223,8 +225,15 @@ fn darkness(smooth: Plane, reach_px: usize) -> (Plane, Paper) {
             *value = rounded((share * 255.0 + LIGHTER) * LEVEL);
         }
     });
-    let paper = Paper::of(&darkness);
+    let paper = Paper::of(&darkness, &light, sheet);
     paper.take_from(&mut darkness);
+    if let Some(sheet) = sheet {
+        let width = darkness.width;
+        darkness.in_rows(|y, row| {
+            let on_sheet = sheet.columns(y, width);
+            (0..).zip(row).filter(|(x, _)| !on_sheet.contains(x)).for_each(|(_, value)| *value = 0);
+        });
+    }
     (darkness, paper)
 }
 

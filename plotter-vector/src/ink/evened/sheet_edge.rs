@@ -1,6 +1,8 @@
 //! [`SheetEdge`]: where the sheet ends and the table begins, in a photograph that shows both.
 
 use super::plane::{LEVEL, Plane, mean};
+use crate::picture::Bitmap;
+use crate::picture::runs::ink_runs;
 
 /// The sheet is looked for in a picture of about this many columns and rows.
 const COARSE_PX: usize = 256;
@@ -23,6 +25,13 @@ const BESIDE: f32 = 3.0;
 /// The part of the places along the edge that must show the step.
 const MOST_OF_EDGE: f32 = 0.75;
 
+/// A side is none of the picture's where something lies beside so many of its places.
+const HALF_A_SIDE: f32 = 15.0;
+
+/// A single step across the picture is the edge of a shadow where ink lies as close beside it as on it, to
+/// this part: a table has no lines as dark as the drawing's, or few.
+const GOES_ON: f32 = 0.5;
+
 /// What is nearer to the sheet's edge belongs to the edge, as a part of the picture's shorter side.
 const EDGE: f32 = 0.008;
 
@@ -31,6 +40,8 @@ const EDGE: f32 = 0.008;
 pub(super) struct SheetEdge {
     pub(super) corners: [(f32, f32); 4],
     margin_px: f32,
+    /// How many of its sides are no sides of the picture.
+    sides: u8,
 }
 
 impl SheetEdge {
@@ -78,8 +89,9 @@ impl SheetEdge {
             return None;
         }
         // Along the sides, but for those that are the picture's own: is there a step?
-        let (mut places, mut steps) = (0.0_f32, 0.0_f32);
+        let (mut places, mut steps, mut seen) = (0.0_f32, 0.0_f32, 0);
         for ((x, y), (to_x, to_y)) in sides() {
+            let before = places;
             let length = libm::hypotf(to_x - x, to_y - y).max(1.0);
             let (out_x, out_y) = ((to_y - y) / length * BESIDE, (x - to_x) / length * BESIDE);
             for part in 1..32_u8 {
@@ -100,12 +112,38 @@ impl SheetEdge {
                     steps += f32::from(u8::from(inside - outside > LEAST_STEP));
                 }
             }
+            seen += u8::from(places - before > HALF_A_SIDE);
         }
         if places < 16.0 || steps < MOST_OF_EDGE * places {
             return None;
         }
         let margin_px = EDGE * full_width.min(full_height) as f32 + scale;
-        Some(Self { corners: corners.map(|(x, y)| (x * scale, y * scale)), margin_px })
+        Some(Self { corners: corners.map(|(x, y)| (x * scale, y * scale)), margin_px, sides: seen })
+    }
+
+    /// Whether it may be the edge of a shadow: one step across the picture, and no more sides.
+    pub(super) fn may_be_shadow(&self) -> bool {
+        self.sides < 2
+    }
+
+    /// Whether the drawing goes on beside it.
+    pub(super) fn has_ink_beside(&self, ink: &Bitmap) -> bool {
+        let mut ink_px = [0_u64; 2];
+        let mut all_px = [0_u64; 2];
+        for y in 0..ink.height() {
+            let on_sheet = self.columns(y as usize, ink.width() as usize);
+            let [inside, outside] = &mut all_px;
+            *inside += on_sheet.len() as u64;
+            *outside += (u64::from(ink.width())).saturating_sub(on_sheet.len() as u64);
+            for x in ink_runs(ink.row(y)).flatten() {
+                let [inside, outside] = &mut ink_px;
+                *(if on_sheet.contains(&(x as usize)) { inside } else { outside }) += 1;
+            }
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a picture's pixels")]
+        let share = |ink_px: u64, px: u64| ink_px as f32 / px.max(1) as f32;
+        let ([ink_in, ink_out], [all_in, all_out]) = (ink_px, all_px);
+        share(ink_out, all_out) > GOES_ON * share(ink_in, all_in)
     }
 
     /// The columns of row `y` that are surely on the sheet.
