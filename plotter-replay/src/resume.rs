@@ -1,12 +1,18 @@
 //! [`ResumePoint`]: where a drawing was left, from the log of the host that sent it.
 
 use crate::frames::Introduction;
-use crate::log::{self, Header, ReadError};
+use crate::log::{self, Event, Header, ReadError};
 use core::fmt;
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 use plotter_motion::protocol::Resume;
 use plotter_motion::{Pen, PenMove};
 use std::path::Path;
+
+/// Before the number of a move by hand, in a note of a recording, and behind it when it was given and when it
+/// was reached.
+pub(crate) const BY_HAND: &str = "host: move by hand ";
+pub(crate) const GIVEN: &str = " given";
+pub(crate) const REACHED: &str = " reached";
 
 static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
 
@@ -65,6 +71,8 @@ pub enum ResumeError {
     Unreadable(ReadError),
     /// No machine has said in it over the reliable link how it stands.
     NoStatus,
+    /// It ends while the machine was led by hand: which move it has taken last, it does not say.
+    LedByHand,
 }
 
 impl fmt::Display for ResumeError {
@@ -74,6 +82,10 @@ impl fmt::Display for ResumeError {
             Self::NoStatus => f.write_str(
                 "no machine says in it over the reliable link how it stands, and one of digits cannot: lead the machine to \
                  its origin and begin the drawing anew",
+            ),
+            Self::LedByHand => f.write_str(
+                "it ends in the middle of a move by hand, which the machine counts like one of the drawing's: lead the \
+                 machine to its origin and begin the drawing anew",
             ),
         }
     }
@@ -86,6 +98,19 @@ impl core::error::Error for ResumeError {
             _ => None,
         }
     }
+}
+
+/// How many moves by hand a machine has taken, as its log has them.
+fn led_by_hand(path: &Path) -> Result<u32, ResumeError> {
+    let (mut given, mut reached) = (0, 0);
+    for record in log::open(path).map_err(ResumeError::Unreadable)?.filter_map(Result::ok) {
+        let Event::Note(words) = &record.event else { continue };
+        let Some(words) = words.strip_prefix(BY_HAND) else { continue };
+        let number = |end| words.strip_suffix(end).and_then(|number| number.parse::<u32>().ok());
+        given = number(GIVEN).unwrap_or(given);
+        reached = number(REACHED).unwrap_or(reached);
+    }
+    if given == reached { Ok(reached) } else { Err(ResumeError::LedByHand) }
 }
 
 impl ResumePoint {
@@ -109,11 +134,16 @@ impl ResumePoint {
         };
         let drawing = whole("drawing_moves").zip(whole("drawing_check"));
         let drawing = drawing.map(|(moves, check)| DrawingMark { moves: moves.into(), check });
-        if let Some((boot, before)) = whole("link_boot").zip(whole("link_before")) {
-            return Ok(Self { resume: Resume { boot, before }, drawing });
-        }
-        let first = Introduction::find(reader.filter_map(Result::ok)).ok_or(ResumeError::NoStatus)?;
-        Ok(Self { resume: Resume { boot: first.boot, before: first.taken }, drawing })
+        let led = led_by_hand(path)?;
+        let (boot, before) = match whole("link_boot").zip(whole("link_before")) {
+            Some(earlier) => earlier,
+            None => {
+                let first = Introduction::find(reader.filter_map(Result::ok)).ok_or(ResumeError::NoStatus)?;
+                (first.boot, first.taken)
+            }
+        };
+        // What was done by hand is none of the drawing's.
+        Ok(Self { resume: Resume { boot, before: before.wrapping_add(led) }, drawing })
     }
 
     /// The header of a log that goes on with the drawing.

@@ -2,7 +2,7 @@
 
 use core::fmt;
 use core::time::Duration;
-use serialport::{ClearBuffer, ErrorKind, SerialPort};
+use serialport::{ClearBuffer, ErrorKind, FlowControl, SerialPort};
 use std::io::{self, Read, Write};
 use std::time::Instant;
 
@@ -167,7 +167,22 @@ impl Port {
     ///
     /// [`PortError`] if that cannot be done.
     pub fn open(name: &str, baud: u32) -> Result<Self, PortError> {
-        let inner = serialport::new(name, baud).timeout(SEND_TIMEOUT).open().map_err(|error| {
+        Self::open_with(name, baud, FlowControl::None)
+    }
+
+    /// The same of a machine that says by a line of its cable that it has no room, which comes to the CTS of
+    /// this computer: bytes wait for it ([`offer`](Self::offer) says how many did not).
+    ///
+    /// # Errors
+    ///
+    /// [`PortError`] if that cannot be done.
+    pub fn open_with_handshake(name: &str, baud: u32) -> Result<Self, PortError> {
+        Self::open_with(name, baud, FlowControl::Hardware)
+    }
+
+    fn open_with(name: &str, baud: u32, flow: FlowControl) -> Result<Self, PortError> {
+        let builder = serialport::new(name, baud).timeout(SEND_TIMEOUT).flow_control(flow);
+        let inner = builder.open().map_err(|error| {
             // `serialport` 4 reports a locked port as `NoDevice`: only its text tells it, or that the path
             // exists.
             let kind = match error.kind {

@@ -1,9 +1,9 @@
 //! [`MachineConfig`]: a machine's description, with the documented gantry as default.
 
 use super::{
-    BeltConfig, DriveChoice, HomingConfig, KinematicsChoice, KinematicsConfig, LaserConfig, MachineName,
-    PenConfig, PlannerConfig, PointToPointConfig, SheetConfig, StepperConfig, TransmissionConfig,
-    VectorizeConfig,
+    BeltConfig, DriveChoice, FollowerConfig, HomingConfig, KinematicsChoice, KinematicsConfig, LaserConfig,
+    MachineName, PenConfig, PlannerConfig, PointToPointConfig, SheetConfig, StepperConfig,
+    TransmissionConfig, VectorizeConfig,
 };
 #[cfg(feature = "third-motor")]
 use super::{SecondMotorConfig, ZConfig};
@@ -55,6 +55,8 @@ pub struct MachineConfig {
     pub vectorize: VectorizeConfig,
     /// How drawings longer than the table are drawn.
     pub sheet: SheetConfig,
+    /// Its camera beside the tool, where it follows lines.
+    pub follower: FollowerConfig,
     /// How the two motors move the pen.
     pub kinematics: KinematicsConfig,
     /// Settings for a machine with one belt only.
@@ -485,6 +487,7 @@ impl Default for MachineConfig {
             stepper_motor: StepperSettings::default(),
             vectorize: VectorizeConfig::default(),
             sheet: SheetConfig::default(),
+            follower: FollowerConfig::default(),
             kinematics: KinematicsConfig::default(),
             belt: BeltConfig::default(),
             point_to_point: PointToPointConfig::default(),

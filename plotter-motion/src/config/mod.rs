@@ -9,6 +9,7 @@
 mod belt_check;
 mod belt_rules;
 mod error;
+mod follower;
 mod kinematics;
 mod machine;
 mod machine_config;
@@ -29,6 +30,7 @@ mod transmission;
 mod vectorize;
 
 pub use error::{Bound, ConfigError};
+pub use follower::FollowerConfig;
 pub use kinematics::{BeltConfig, KinematicsChoice, KinematicsConfig, KnownMotors, PointToPointConfig};
 pub use machine::Machine;
 pub(crate) use machine_config::CLAMPS_V;

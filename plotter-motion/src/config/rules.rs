@@ -640,6 +640,7 @@ pub(super) fn rules() -> impl Iterator<Item = &'static Rule> {
         .chain(&LATENCY)
         .chain(&BELT)
         .chain(&super::sheet::RULES)
+        .chain(&super::follower::RULES)
         .chain(&X)
         .chain(&X_TRANSMISSION)
         .chain(&Y)

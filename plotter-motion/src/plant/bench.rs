@@ -4,7 +4,7 @@ use super::{AxisPlant, DriveDelay, SimulatedLine};
 use crate::control::LineController;
 use crate::firmware::{Gantry, LinkedGantry, Notice};
 use crate::protocol::{Host, HostEvent, HostSettings};
-use crate::{Axis, Direction, Drive, LimitSwitches, Machine, PenMove, Point, SafetyGate};
+use crate::{Axis, Direction, Drive, LimitSwitches, Machine, Pen, PenMove, Point, SafetyGate};
 use alloc::collections::VecDeque;
 use core::time::Duration;
 
@@ -63,6 +63,10 @@ pub trait BenchController {
     fn take_notice(&mut self) -> Option<Notice>;
     /// What both motors get.
     fn drive(&self) -> Drive<'_>;
+    /// Where the pen belongs, for a controller that is told; the digits protocol does not say.
+    fn pen(&self) -> Option<Pen> {
+        None
+    }
 }
 
 /// Its bytes wait on the line, however many they are.
@@ -115,6 +119,9 @@ impl<const WINDOW: usize, const PAYLOAD: usize, C: LineController> BenchControll
     }
     fn take_notice(&mut self) -> Option<Notice> {
         Self::take_notice(self)
+    }
+    fn pen(&self) -> Option<Pen> {
+        Some(Self::pen(self))
     }
     fn drive(&self) -> Drive<'_> {
         self.gantry().drive()

@@ -172,6 +172,7 @@ pub struct Host<I> {
     sent: u32,
     reached: u32,
     given_up_in_a_row: u8,
+    stays: bool,
 }
 
 impl<I: Iterator<Item = PenMove>> Host<I> {
@@ -188,7 +189,35 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
             sent: 0,
             reached: 0,
             given_up_in_a_row: 0,
+            stays: false,
         }
+    }
+
+    /// The same, which is never done for want of moves: it asks for one at each [`poll`](Self::poll) while
+    /// nothing is under way, as a person leads a machine by hand.
+    #[must_use]
+    pub const fn staying(mut self) -> Self {
+        self.stays = true;
+        self
+    }
+
+    /// The same, of a machine whose motors stand here and not at the origin, encoder counts.
+    #[must_use]
+    pub const fn standing_at(mut self, position: StepPoint) -> Self {
+        self.position = position;
+        self
+    }
+
+    /// Leads the machine to another target than the one under way, of which no more is said. Says whether it
+    /// does: not in the middle of a target's digits, and not to a target that has none.
+    pub fn redirect(&mut self, now: Duration, next: PenMove) -> bool {
+        if !self.sender.is_idle() || self.sender.start(now, next.target).is_err() {
+            return false;
+        }
+        self.current = next;
+        let nearest = self.distance();
+        self.state = State::Waiting { nearest, nearer_at: now, heard: now, retries: 0 };
+        true
     }
 
     /// Looks at the clock; call it again at [`next_wake`](Self::next_wake) at the latest. Says what is new:
@@ -197,7 +226,9 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
         match self.state {
             State::Ready => {
                 let Some(next) = self.moves.next() else {
-                    self.state = State::Done;
+                    if !self.stays {
+                        self.state = State::Done;
+                    }
                     return None;
                 };
                 match self.sender.start(now, next.target) {
@@ -261,6 +292,7 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
     pub fn next_wake(&self) -> Option<Duration> {
         const TICK: Duration = Duration::from_micros(1); // limits are exceeded one tick after they are met
         let patience = match self.state {
+            State::Ready if self.stays => None, // whoever has a move polls it
             State::Ready => Some(Duration::ZERO),
             State::Waiting { nearer_at, heard, .. } if self.sender.is_idle() => {
                 let late = nearer_at.saturating_add(self.settings.patience);

@@ -70,6 +70,11 @@ pub struct LinkHost<I, const WINDOW: usize, const PAYLOAD: usize> {
     /// What the machine says it does, and the last order by digits that is not out.
     state: Order,
     order_byte: Option<u8>,
+    /// Whether it is never done for want of moves.
+    stays: bool,
+    /// Whether the machine is called anew to take moves back, and how many it has kept.
+    withdraws: bool,
+    kept: Option<usize>,
 }
 
 impl<I: Iterator<Item = PenMove>, const WINDOW: usize, const PAYLOAD: usize> LinkHost<I, WINDOW, PAYLOAD> {
@@ -108,7 +113,37 @@ impl<I: Iterator<Item = PenMove>, const WINDOW: usize, const PAYLOAD: usize> Lin
             session: 0,
             state: Order::GoOn,
             order_byte: None,
+            stays: false,
+            withdraws: false,
+            kept: None,
         }
+    }
+
+    /// The same, which is never done for want of moves: it asks for more at each [`poll`](Self::poll), as a
+    /// person leads a machine by hand.
+    #[must_use]
+    pub const fn staying(mut self) -> Self {
+        self.stays = true;
+        self
+    }
+
+    /// Takes back the moves that the machine has not begun, by another session. How many it keeps, and
+    /// finishes, [`take_kept`](Self::take_kept) says; until then give it no others. A machine of digits has
+    /// none that it has not begun.
+    pub fn withdraw(&mut self) {
+        if self.digits.is_some() || self.ahead_length == 0 {
+            self.kept = Some(self.ahead_length);
+            return;
+        }
+        self.withdraws = true;
+        let next = self.link.session().wrapping_add(1);
+        self.link.call(next);
+    }
+
+    /// How many of the moves that are not reached the machine keeps, once it has said so after
+    /// [`withdraw`](Self::withdraw).
+    pub const fn take_kept(&mut self) -> Option<usize> {
+        self.kept.take()
     }
 
     /// Goes on with a drawing that another host has begun: `moves` are all of it, from its first.
@@ -170,7 +205,11 @@ impl<I: Iterator<Item = PenMove>, const WINDOW: usize, const PAYLOAD: usize> Lin
         match self.link.state() {
             LinkState::DigitsOnly => {
                 let moves = self.moves.take()?;
-                self.digits = Some(Host::new(self.byte_gap, self.host_settings, moves));
+                let host = Host::new(self.byte_gap, self.host_settings, moves);
+                self.digits = Some(if self.stays { host.staying() } else { host });
+                if core::mem::take(&mut self.withdraws) {
+                    self.kept = Some(0);
+                }
                 return Some(HostEvent::Notice(HostNotice::DigitsOnly));
             }
             LinkState::Restarted => {
@@ -214,7 +253,8 @@ impl<I: Iterator<Item = PenMove>, const WINDOW: usize, const PAYLOAD: usize> Lin
             return Some(event);
         }
         self.send_ahead();
-        self.finished = self.status && self.ahead_length == 0 && self.reached_there == self.oldest;
+        self.finished =
+            !self.stays && self.status && self.ahead_length == 0 && self.reached_there == self.oldest;
         if self.status && !self.begun && self.ahead_length > 0 {
             self.begun = true;
             return self.ahead.first().map(|&first| HostEvent::Begun(first));
@@ -301,6 +341,11 @@ impl<I: Iterator<Item = PenMove>, const WINDOW: usize, const PAYLOAD: usize> Lin
             Some(_) => {
                 // Another session of the same host: what was taken is not sent again.
                 self.written = (taken.wrapping_sub(self.oldest) as usize).min(self.ahead_length);
+                if core::mem::take(&mut self.withdraws) {
+                    self.ahead_length = self.written;
+                    self.begun &= self.written > 0;
+                    self.kept = Some(self.written);
+                }
             }
         }
         None

@@ -2,6 +2,7 @@
 
 use super::commands::{Done, Verdict, say, say_first};
 use super::drawing::DrawingFile;
+use super::find_machine::{Found, Wanted, find_machine};
 use super::live::{LAST_LOOK, LOOK_EVERY, Live};
 use super::machine::lines_header;
 use crate::PlotterSettings;
@@ -18,8 +19,8 @@ use plotter_motion::gcode::{PenControl, WriteOptions};
 use plotter_motion::kinematics::{BeltSigns, Cartesian, CoreXy, Kinematics, MotorScale};
 use plotter_motion::protocol::ebb::EbbMotionSettings;
 use plotter_motion::protocol::hosts::{
-    EbbHost, EbbHostSettings, Finder, Finding, Grbl, Hpgl, Language, LineHost, LineHostSettings, MDraw,
-    MachineHost, Marlin, Tongue,
+    EbbHost, EbbHostSettings, Grbl, Hpgl, HpglFlow, Language, LineHost, LineHostSettings, MDraw, MachineHost,
+    Marlin, Tongue,
 };
 use plotter_motion::{Machine, Pen, PenMove, PlannerSettings, PlotOp, Point};
 use std::io::Write;
@@ -28,7 +29,7 @@ use std::time::{Duration, Instant};
 
 /// What is spoken with a machine that is led by lines of text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Protocol {
+pub enum Protocol {
     /// Found out: its greeting is waited for, then it is asked once in each language
     #[default]
     Auto,
@@ -46,6 +47,28 @@ pub(crate) enum Protocol {
     Eggbot,
 }
 
+/// How a pen plotter says that it has no room.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Flow {
+    /// It is asked behind each line (ESC .B)
+    #[default]
+    Asked,
+    /// It sends XOFF and XON
+    XonXoff,
+    /// Its line DTR, which the cable leads to CTS here: the plotter's stop waits with the rest
+    Dtr,
+}
+
+impl From<Flow> for HpglFlow {
+    fn from(flow: Flow) -> Self {
+        match flow {
+            Flow::Asked => Self::Asked,
+            Flow::XonXoff => Self::XonXoff,
+            Flow::Dtr => Self::Dtr,
+        }
+    }
+}
+
 impl Protocol {
     const fn tongue(self) -> Option<Tongue> {
         match self {
@@ -60,7 +83,7 @@ impl Protocol {
 }
 
 /// What a log of this language has for its protocol.
-const fn protocol_of(tongue: Tongue) -> &'static str {
+pub(super) const fn protocol_of(tongue: Tongue) -> &'static str {
     match tongue {
         Tongue::MDraw => "mdraw",
         Tongue::Marlin => "marlin",
@@ -120,6 +143,7 @@ fn of_ebb<K: Kinematics + Clone + Send + 'static>(
 fn host_of(
     tongue: Tongue,
     is_mixed: bool,
+    flow: HpglFlow,
     machine: &Machine,
     ops: Ops,
     left: Option<(u64, u64)>,
@@ -141,7 +165,7 @@ fn host_of(
             let pen = if is_height { height } else { servo };
             of_lines(Marlin::new(WriteOptions { pen, ..usual }), ops, left)
         }
-        Tongue::Hpgl => of_lines(Hpgl::new(), ops, left),
+        Tongue::Hpgl => of_lines(Hpgl::new().with_flow(flow), ops, left),
         Tongue::Ebb => {
             let steps_per_mm = config.x.stepper.steps_per_mm;
             if is_mixed {
@@ -158,6 +182,66 @@ fn host_of(
             of_lines(Grbl::new(WriteOptions { pen, ..usual }), ops, left)
         }
     })
+}
+
+/// What a session needs of a machine of lines that is led by hand: the line, its host, and its settings.
+pub(super) struct LinesByHand {
+    pub(super) line: Arc<dyn Line>,
+    pub(super) host: Box<dyn MachineHost + Send>,
+    pub(super) tongue: Tongue,
+    pub(super) settings: SessionSettings,
+    pub(super) name: String,
+}
+
+/// A machine of lines for who leads it by hand: on a port, or simulated in this program.
+pub(super) fn lines_by_hand(
+    machine: &Machine,
+    port: Option<&str>,
+    protocol: Protocol,
+    speed: f64,
+    out: &mut impl Write,
+) -> Result<LinesByHand, String> {
+    let config = machine.config();
+    let is_mixed = protocol != Protocol::Eggbot;
+    let said = |error: &dyn core::fmt::Display| error.to_string();
+    let (line, tongue, name, baud): (Arc<dyn Line>, _, _, _) = match port {
+        Some(name) => {
+            let name = find(name).map_err(|error| said(&error))?;
+            let open =
+                |baud| Port::open(&name, baud).and_then(PortLine::new).map_err(|error| error.to_string());
+            let wanted = Wanted { tongue: protocol.tongue(), baud: config.serial.baud, is_fixed: false };
+            let Found { line, tongue, baud } = match protocol.tongue() {
+                Some(tongue) if tongue != Tongue::Hpgl => {
+                    Found { line: open(config.serial.baud)?, tongue, baud: config.serial.baud }
+                }
+                _ => find_machine(&name, wanted, open, out)?,
+            };
+            (Arc::new(line), tongue, name, baud)
+        }
+        None => {
+            let tongue = protocol.tongue().unwrap_or(Tongue::Grbl);
+            let simulated = SimulatedMachine::speaking(machine, spoken_of(tongue, is_mixed))
+                .map_err(|error| said(&error))?;
+            let name = String::from("none: simulated in this program");
+            (Arc::new(simulated.line(speed)), tongue, name, config.serial.baud)
+        }
+    };
+    let plotter = PlotterSettings::from_header(&lines_header(machine, protocol_of(tongue)))
+        .map_err(|error| said(&error))?;
+    let host = host_of(tongue, is_mixed, HpglFlow::Asked, machine, Box::new(core::iter::empty()), None)?;
+    let settings = SessionSettings { plotter, baud, ..SessionSettings::default() };
+    Ok(LinesByHand { line, host, tongue, settings, name })
+}
+
+/// What a simulated machine speaks.
+const fn spoken_of(tongue: Tongue, is_mixed: bool) -> Spoken {
+    match tongue {
+        Tongue::MDraw => Spoken::MDraw,
+        Tongue::Marlin => Spoken::Marlin,
+        Tongue::Hpgl => Spoken::Hpgl,
+        Tongue::Ebb => Spoken::Ebb { is_mixed },
+        _ => Spoken::Grbl,
+    }
 }
 
 impl Live {
@@ -181,26 +265,17 @@ impl Live {
         if known.as_ref().is_some_and(|known| known.errors > 0) {
             verdict = Verdict::Found;
         }
+        let mut baud = self.baud.unwrap_or(config.serial.baud);
         let (line, tongue, name, log): (Arc<dyn Line>, _, _, _) = match &self.port {
             Some(name) => {
                 let name = find(name).map_err(|error| error.to_string())?;
-                let port = Port::open(&name, config.serial.baud).map_err(|error| error.to_string())?;
-                let line = PortLine::new(port).map_err(|error| error.to_string())?;
-                let tongue = match self.protocol.tongue() {
-                    Some(tongue) => tongue,
-                    None => find_tongue(&line, &name, out)?,
-                };
+                let (line, tongue, found) = self.open_lines(&name, config.serial.baud, out)?;
+                baud = found;
                 (Arc::new(line), tongue, name, None)
             }
             None => {
                 let tongue = self.protocol.tongue().unwrap_or(Tongue::Grbl);
-                let spoken = match tongue {
-                    Tongue::MDraw => Spoken::MDraw,
-                    Tongue::Marlin => Spoken::Marlin,
-                    Tongue::Hpgl => Spoken::Hpgl,
-                    Tongue::Ebb => Spoken::Ebb { is_mixed },
-                    _ => Spoken::Grbl,
-                };
+                let spoken = spoken_of(tongue, is_mixed);
                 let simulated =
                     SimulatedMachine::speaking(machine, spoken).map_err(|error| error.to_string())?;
                 let log =
@@ -220,10 +295,11 @@ impl Live {
             Some(drawing) => Box::new(drawing.ops(counts_per_mm)?.filter_map(Result::ok)),
             None => Box::new(core::iter::empty()),
         };
-        let host = host_of(tongue, is_mixed, machine, ops, left)?;
+        let host = host_of(tongue, is_mixed, self.flow.into(), machine, ops, left)?;
         let area_mm = [0.0, 0.0, config.area.width_mm, config.area.height_mm];
         self.describe_lines(&mut page, machine, tongue, &name, known.as_ref());
-        let settings = SessionSettings { plotter, baud: config.serial.baud, ..SessionSettings::default() };
+        let settings =
+            SessionSettings { plotter, baud, pens: self.pens.clone(), ..SessionSettings::default() };
         let targets = known.as_ref().map_or(0, |known| known.table.plan().targets);
         let has_drawing = known.is_some();
         let session = Session::hosted(line, host, known.map(|known| known.table), Some(recording), settings);
@@ -239,6 +315,33 @@ impl Live {
                     say(out, &format!("operations: {done} of {targets} drawn"));
                 }
                 Ok(if done < targets { Verdict::Found } else { verdict })
+            }
+        }
+    }
+
+    /// The port with the machine, in the language that was asked for or that it is found to speak. A pen
+    /// plotter's speed is looked for, too: it is set by switches at its back.
+    fn open_lines(
+        &self,
+        name: &str,
+        baud: u32,
+        out: &mut impl Write,
+    ) -> Result<(PortLine, Tongue, u32), String> {
+        let open = |baud| {
+            let port = if self.flow == Flow::Dtr {
+                Port::open_with_handshake(name, baud)
+            } else {
+                Port::open(name, baud)
+            };
+            port.and_then(PortLine::new).map_err(|error| error.to_string())
+        };
+        let baud = self.baud.unwrap_or(baud);
+        match self.protocol.tongue() {
+            Some(tongue) if tongue != Tongue::Hpgl => Ok((open(baud)?, tongue, baud)),
+            tongue => {
+                let wanted = Wanted { tongue, baud, is_fixed: self.baud.is_some() };
+                let Found { line, tongue, baud } = find_machine(name, wanted, open, out)?;
+                Ok((line, tongue, baud))
             }
         }
     }
@@ -416,7 +519,8 @@ impl Live {
     ) {
         let config = machine.config();
         page.is_simulated = self.port.is_none();
-        page.has_hand = true;
+        (page.has_hand, page.is_lines) = (true, true);
+        page.pens.clone_from(&self.pens);
         page.shows_done = matches!(tongue, Tongue::Marlin | Tongue::Hpgl | Tongue::Ebb);
         page.about = if page.is_simulated {
             format!("{} is SIMULATED: no motor turns, at up to {} times its time.", config.name, self.speed)
@@ -455,32 +559,6 @@ impl Live {
                 "drawing",
                 format!("{} operations, {:.2} m of way", plan.targets, plan.way_mm / 1e3),
             ));
-        }
-    }
-}
-
-/// Which language the machine on a port speaks.
-fn find_tongue(line: &PortLine, name: &str, out: &mut impl Write) -> Result<Tongue, String> {
-    say(out, &format!("{name}: which language does the machine speak? (--protocol says it)"));
-    let _ = out.flush();
-    let began = Instant::now();
-    let mut finder = Finder::new(Duration::ZERO);
-    let mut bytes = [0; 256];
-    loop {
-        match finder.poll(began.elapsed()) {
-            Finding::Found(tongue) => return Ok(tongue),
-            Finding::Send(question) => line.send(question).map_err(|error| error.to_string())?,
-            Finding::Nothing => {
-                return Err(format!(
-                    "{name}: nothing that is there answers in a language known here: is the machine on, its baud rate right, \
-                     and no other program at the port? --protocol says which language it is"
-                ));
-            }
-            Finding::Until(_) => {
-                let count =
-                    line.receive(&mut bytes, Duration::from_millis(50)).map_err(|error| error.to_string())?;
-                bytes.get(..count).unwrap_or_default().iter().for_each(|&byte| finder.receive(byte));
-            }
         }
     }
 }

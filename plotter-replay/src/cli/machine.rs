@@ -89,8 +89,22 @@ fn ebb_header(machine: &Machine, is_mixed: bool) -> Header {
     if is_mixed { header.with_text("belt_signs", "tracking-equations") } else { header }
 }
 
-#[cfg(all(feature = "live", unix))]
-fn belt_header(machine: &Machine) -> Header {
+/// How far beside its target a board with a belt may say that it has arrived, counts of a motor: within the
+/// allowed error along both axes, one motor may be off by both.
+#[cfg(feature = "live")]
+pub(crate) fn belt_tolerance(machine: &Machine) -> f64 {
+    let config = machine.config();
+    match config.control.controller {
+        ControllerChoice::Published => {
+            (2.0 * config.point_to_point.allowed_error_mm * config.x.counts_per_mm).ceil()
+        }
+        _ => 1.0,
+    }
+}
+
+/// What the log of a simulated board with a belt says of it.
+#[cfg(feature = "live")]
+pub(crate) fn belt_header(machine: &Machine) -> Header {
     use plotter_motion::firmware::MarkingBoardSettings;
     use plotter_motion::kinematics::BeltSigns;
     let config = machine.config();
@@ -99,11 +113,6 @@ fn belt_header(machine: &Machine) -> Header {
     let signs = match settings.belt.signs() {
         BeltSigns::DirectionTable => "direction-table",
         BeltSigns::TrackingEquations => "tracking-equations",
-    };
-    let tolerance = match config.control.controller {
-        // Within the allowed error along both axes, one motor may be off by both.
-        ControllerChoice::Published => (2.0 * config.point_to_point.allowed_error_mm / mm_per_pulse).ceil(),
-        _ => 1.0,
     };
     let mut preset = MachineConfig::marking_board();
     preset.control.controller = ControllerChoice::Published;
@@ -118,7 +127,7 @@ fn belt_header(machine: &Machine) -> Header {
         .with_decimal("y_mm_per_pulse", mm_per_pulse)
         .with_decimal("p1_x_mm", settings.start.x)
         .with_decimal("p1_y_mm", settings.start.y)
-        .with_decimal("reached_tolerance_counts", tolerance)
+        .with_decimal("reached_tolerance_counts", belt_tolerance(machine))
 }
 
 /// How fast a simulated machine's time passes. No computer makes a million seconds of a machine in one.

@@ -17,12 +17,18 @@ mod commands;
 mod compare;
 mod drawing;
 mod export;
+#[cfg(feature = "live")]
+mod find_machine;
 mod import;
 mod info;
+#[cfg(feature = "live")]
+mod led_machine;
 #[cfg(feature = "live")]
 mod live;
 #[cfg(feature = "live")]
 mod live_hosted;
+#[cfg(feature = "live")]
+mod live_targets;
 mod machine;
 mod output;
 mod record;
@@ -33,6 +39,8 @@ mod simulate;
 
 use clap::{Arg, ArgAction, ArgMatches, CommandFactory as _, Parser};
 use commands::{Command, Verdict};
+#[cfg(feature = "live")]
+pub use led_machine::{LedError, LedMachine, LedPort, Protocol};
 use output::{Output, Shown};
 use std::io::Write as _;
 use std::process::ExitCode;

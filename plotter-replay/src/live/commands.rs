@@ -1,6 +1,7 @@
 //! [`Command`] and [`State`]: what a person may ask of a session, and what it is doing.
 
-use plotter_motion::{Pen, Point, Vec2};
+use super::Shape;
+use plotter_motion::{Axis, Direction, Pen, Point, StepPoint, Vec2};
 
 /// What a person asks of a session.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +16,7 @@ pub enum Command {
     Stop,
     /// Forget what was drawn so far, on the screen only.
     Clear,
-    /// Something by hand, on a machine that is led by lines of text.
+    /// Something by hand.
     Hand(Hand),
 }
 
@@ -31,6 +32,9 @@ pub enum Hand {
     EndJog,
     /// Move to this place with the pen lifted.
     GoTo(Point),
+    /// Draw a line to this place from where the pen is, which stays lowered behind it, at this speed, mm/s; 0
+    /// leaves it to the machine.
+    DrawTo(Point, f64),
     /// Lift or lower the pen where it is.
     Pen(Pen),
     /// The number that lowers the pen.
@@ -43,18 +47,30 @@ pub enum Hand {
     StandsAt(Point),
     /// Speed of the drawing, per cent of what it asks for.
     Feed(u8),
-    /// A line from one place to another, at this speed, mm/s.
-    Line(Point, Point, f64),
-    /// A rectangle: its lower left corner, width and height, mm, and speed, mm/s.
-    Rectangle(Point, Vec2, f64),
-    /// A circle: its leftmost point, radius, mm, number of points, and speed, mm/s.
-    Circle(Point, f64, u16, f64),
+    /// A shape by its numbers.
+    Shape {
+        /// Which one, and where.
+        shape: Shape,
+        /// Speed, mm/s; 0 leaves it to the machine.
+        speed_mm_s: f64,
+        /// How far from where it was led the machine may come to rest, mm: what is more is said.
+        allowed_mm: Option<f64>,
+    },
+    /// On and on that way, as long as this is said again, ten times a second: a machine of targets whose
+    /// drive has a ramp.
+    Hold(Vec2),
+    /// One count that way: a machine of targets.
+    Pulse(Axis, Direction),
+    /// The origin P1 of the drawing, encoder counts: a machine of targets.
+    Origin(StepPoint),
 }
 
 impl Hand {
-    /// The command of these words: `next`, `jog X Y F`, `end-jog`, `go X Y`, `pen up`, `pen down`, `pen-down
+    /// The command of these words: `next`, `jog X Y F`, `end-jog`, `go X Y`, `draw X Y F`, `pen up`, `pen down`, `pen-down
     /// S`, `home`, `unlock`, `origin X Y`, `feed P`, `line X Y X Y F`, `rectangle X Y W H F`, `circle X Y R N
-    /// F`.
+    /// F`, `hold X Y`, `p1 X Y`, and `pulse N` with the digit that tells it: 1 and 2 for x, 3 and 4 for y. The
+    /// shapes may have a sixth number, the error that is allowed, mm; a circle of 0 points has as many as that
+    /// asks for.
     fn from_words(words: &str) -> Option<Self> {
         let mut words = words.split_ascii_whitespace();
         let name = words.next()?;
@@ -65,13 +81,13 @@ impl Hand {
                 _ => return None,
             }));
         }
-        let mut numbers = [0.0; 5];
+        let mut numbers = [0.0; 6];
         let mut count = 0;
         for word in words {
             *numbers.get_mut(count)? = word.parse::<f64>().ok().filter(|number| number.abs() <= 1e6)?;
             count += 1;
         }
-        let [a, b, c, d, e] = numbers;
+        let [a, b, c, d, speed_mm_s, allowed] = numbers;
         let whole = |number: f64, most: f64| -> Option<u16> {
             #[expect(
                 clippy::cast_possible_truncation,
@@ -85,14 +101,36 @@ impl Hand {
             ("jog", 3) => Self::Jog(Vec2::new(a, b), c),
             ("end-jog", 0) => Self::EndJog,
             ("go", 2) => Self::GoTo(Point::new(a, b)),
+            ("draw", 3) => Self::DrawTo(Point::new(a, b), c),
             ("pen-down", 1) => Self::PenDownAt(whole(a, 65_535.0)?),
             ("home", 0) => Self::Home,
             ("unlock", 0) => Self::Unlock,
             ("origin", 2) => Self::StandsAt(Point::new(a, b)),
             ("feed", 1) => Self::Feed(u8::try_from(whole(a, 200.0)?).ok()?),
-            ("line", 5) => Self::Line(Point::new(a, b), Point::new(c, d), e),
-            ("rectangle", 5) => Self::Rectangle(Point::new(a, b), Vec2::new(c, d), e),
-            ("circle", 5) => Self::Circle(Point::new(a, b), c, whole(d, 10_000.0).filter(|&n| n > 2)?, e),
+            ("hold", 2) => Self::Hold(Vec2::new(a, b)),
+            ("p1", 2) => Self::Origin(StepPoint::new(
+                i32::from(whole(a.abs(), 65_535.0)?) * if a < 0.0 { -1 } else { 1 },
+                i32::from(whole(b.abs(), 65_535.0)?) * if b < 0.0 { -1 } else { 1 },
+            )),
+            ("pulse", 1) => match whole(a, 4.0)? {
+                1 => Self::Pulse(Axis::X, Direction::Plus),
+                2 => Self::Pulse(Axis::X, Direction::Minus),
+                3 => Self::Pulse(Axis::Y, Direction::Plus),
+                4 => Self::Pulse(Axis::Y, Direction::Minus),
+                _ => return None,
+            },
+            (name, 5 | 6) => {
+                let allowed_mm = (count == 6 && allowed > 0.0).then_some(allowed);
+                let at = Point::new(a, b);
+                let shape = match name {
+                    "line" => Shape::Line(at, Point::new(c, d)),
+                    "rectangle" => Shape::Rectangle(at, Vec2::new(c, d)),
+                    "circle" if d == 0.0 => Shape::Circle(at, c, Shape::points(c, allowed_mm?)),
+                    "circle" => Shape::Circle(at, c, whole(d, 10_000.0).filter(|&n| n > 2)?),
+                    _ => return None,
+                };
+                Self::Shape { shape, speed_mm_s, allowed_mm }
+            }
             _ => return None,
         })
     }

@@ -1,12 +1,15 @@
 //! [`Engine`]: the loop of a session: commands, host, line.
 
+use super::desk::{Desk, Fed, Steps};
 use super::journal::Journal;
 use super::line::lock;
 use super::machine_log::Recording;
 use super::sender::Sender;
 use super::session::Shared;
+use super::session_settings::pen_wanted;
 use super::{Command, SessionSettings, State, Telemetry};
 use crate::log::Event;
+use crate::resume::{BY_HAND, GIVEN, REACHED};
 use crate::serial::PortError;
 use core::time::Duration;
 use plotter_motion::protocol::{HostEvent, HostNotice, Order};
@@ -17,8 +20,13 @@ use std::sync::{Arc, Mutex};
 
 /// Longest time for which the line is listened to at once, in its time; so long ahead it takes bytes.
 const LISTEN: Duration = Duration::from_millis(2);
+/// Moves that lie ready for a machine on the reliable link, so that it need not wait for the line: as many as
+/// its host keeps.
+const AHEAD: usize = 32;
+
 pub(super) struct Engine<'a, W: Write> {
-    host: Option<Sender>,
+    pub(super) host: Sender,
+    pub(super) desk: Desk,
     journal: Journal<'a, W>,
     telemetry: Option<Arc<Mutex<Telemetry>>>,
     /// Time in which the host's clock stood still.
@@ -34,20 +42,26 @@ pub(super) struct Engine<'a, W: Write> {
     wants_stop: bool,
     /// Whether what another host has drawn was taken into account.
     is_resumed: bool,
-    settings: SessionSettings,
-    shared: &'a Shared,
+    /// Until when a key is held, where that is one long move.
+    pub(super) held_until: Option<Duration>,
+    /// The greatest error that a shape by hand allows, mm.
+    pub(super) allowed_mm: Option<f64>,
+    pub(super) settings: SessionSettings,
+    pub(super) shared: &'a Shared,
 }
 
 impl<'a, W: Write> Engine<'a, W> {
     pub(super) fn new(
-        host: Option<Sender>,
+        drawing: Option<Steps>,
         recorder: Option<Recording<W>>,
         telemetry: Option<Arc<Mutex<Telemetry>>>,
         settings: SessionSettings,
         shared: &'a Shared,
     ) -> Self {
+        let desk = Desk::new(drawing, settings.stands_at, settings.most);
         Self {
-            host,
+            host: Sender::new(&settings, desk.tray()),
+            desk,
             journal: Journal::new(recorder, shared),
             telemetry,
             frozen: Duration::ZERO,
@@ -57,6 +71,8 @@ impl<'a, W: Write> Engine<'a, W> {
             failure: None,
             wants_stop: false,
             is_resumed: false,
+            held_until: None,
+            allowed_mm: None,
             settings,
             shared,
         }
@@ -74,7 +90,7 @@ impl<'a, W: Write> Engine<'a, W> {
         self.journal.end(end, |view| view.duty = None);
     }
 
-    fn now(&self) -> Duration {
+    pub(super) fn now(&self) -> Duration {
         self.journal.now()
     }
 
@@ -84,27 +100,30 @@ impl<'a, W: Write> Engine<'a, W> {
         let state = lock(&self.shared.view).state.clone();
         let now = self.now();
         let host_now = self.host_clock(now, &state);
+        let by_hand = self.desk.has_by_hand();
         // On the reliable link the machine is told to wait; by digits it is told nothing more.
-        let is_digits = self.host.as_ref().is_none_or(Sender::is_digits);
-        let drawing = match state {
+        let talks = match state {
             State::Running => true,
-            State::Paused => !is_digits || self.under_way.is_some(),
-            State::Stopped => self.host.as_ref().is_some_and(Sender::is_linked),
+            State::Paused => !self.host.is_digits() || self.under_way.is_some() || by_hand,
+            State::Stopped => self.host.is_linked(),
+            State::Ready | State::Watching => by_hand || self.host.is_linked(),
             _ => false,
         };
         let mut wait = LISTEN;
-        if drawing && self.host.is_some() {
+        if talks {
+            if let Some(end) = self.feed(&state) {
+                return Ok(Some(end));
+            }
+            self.let_go(host_now);
             self.send(host_now)?;
             if let Some(why) = self.failure.take() {
                 return Ok(Some(State::Failed(why)));
             }
-            if let Some(host) = &self.host {
-                if host.is_done() {
-                    return Ok(Some(State::Done));
-                }
-                let wake = host.next_wake(LISTEN);
-                wait = wake.map_or(LISTEN, |wake| wake.saturating_sub(host_now)).min(LISTEN);
+            if self.host.is_done() {
+                return Ok(Some(State::Done));
             }
+            let wake = self.host.next_wake(LISTEN);
+            wait = wake.map_or(LISTEN, |wake| wake.saturating_sub(host_now)).min(LISTEN);
         }
         let mut bytes = [0; 1_024];
         let count = self.shared.line.receive(&mut bytes, wait)?;
@@ -113,8 +132,7 @@ impl<'a, W: Write> Engine<'a, W> {
             let host_now = host_now.max(self.now().saturating_sub(self.frozen));
             self.take(Event::Controller(bytes.to_vec()));
             for &byte in bytes {
-                let event = self.host.as_mut().and_then(|host| host.receive(host_now, byte));
-                if let Some(event) = event {
+                if let Some(event) = self.host.receive(host_now, byte) {
                     self.event(event);
                 }
             }
@@ -122,6 +140,47 @@ impl<'a, W: Write> Engine<'a, W> {
         }
         self.look();
         Ok(None)
+    }
+
+    /// Gives the host what is next; the end, if that is all.
+    fn feed(&mut self, state: &State) -> Option<State> {
+        if self.settings.resume.is_some() && !self.is_resumed && !self.host.is_digits() {
+            return None; // what another host has drawn is not known yet
+        }
+        if let Some(kept) = self.host.take_kept() {
+            self.desk.withdrawn(kept);
+            if kept == 0 {
+                self.under_way = None;
+            }
+        }
+        if matches!(state, State::Ready | State::Watching | State::Paused) {
+            self.desk.feed_by_hand();
+        }
+        if *state != State::Running {
+            return None;
+        }
+        let fed = self.desk.feed(if self.host.is_digits() { 1 } else { AHEAD });
+        match fed {
+            Fed::Given => {}
+            Fed::Pen(pen) => self.wait_for(pen_wanted(&self.settings.pens, pen)),
+            Fed::Sheet => self.wait_for(String::from("a new sheet is wanted: put it in, then go on")),
+            Fed::Paused => self.wait_for(String::new()),
+            Fed::Over => return Some(State::Done),
+        }
+        None
+    }
+
+    /// A person has something to do before it goes on.
+    fn wait_for(&mut self, wants: String) {
+        let now = self.now();
+        if !wants.is_empty() {
+            self.take(Event::Note(format!("host: {wants}")));
+        }
+        let mut view = lock(&self.shared.view);
+        if !wants.is_empty() {
+            view.message(now, wants.clone());
+        }
+        (view.state, view.wants) = (State::Paused, wants);
     }
 
     fn obey(&mut self) -> Result<(), PortError> {
@@ -132,6 +191,24 @@ impl<'a, W: Write> Engine<'a, W> {
             if command == Command::Resume && *lock(&self.shared.stop_is_new) {
                 continue; // it was stopped again since
             }
+            if let Command::Hand(hand) = command {
+                let now = self.now();
+                let refused = self.hand(hand).err().map(|why| why.to_string());
+                let mut view = lock(&self.shared.view);
+                if let Some(why) = &refused {
+                    view.message(now, why.clone());
+                }
+                view.hand.took(refused);
+                view.hand.rests = self.desk.is_idle();
+                continue;
+            }
+            if command == Command::Start
+                && let Err(why) = self.fits()
+            {
+                let now = self.now();
+                lock(&self.shared.view).message(now, why);
+                continue;
+            }
             let next = {
                 let mut view = lock(&self.shared.view);
                 if command == Command::Clear {
@@ -139,42 +216,50 @@ impl<'a, W: Write> Engine<'a, W> {
                 }
                 let next = view.state.after(command);
                 let before = next.clone().map(|next| core::mem::replace(&mut view.state, next));
+                if before.is_some() {
+                    view.wants.clear();
+                }
                 before.zip(next)
             };
             match (command, next) {
+                (Command::Start, Some(_)) => self.desk.all(),
                 (Command::Stop, _) => {
                     (self.wants_stop, *lock(&self.shared.stop_is_new)) = (true, false);
                     // Its bytes are out. Over frames it is also told in a way that is answered.
                     let bytes = self.shared.stop_bytes().to_vec();
                     self.take(Event::Host(bytes));
-                    if let Some(host) = &mut self.host {
-                        let _ = host.order(Order::Stop);
-                    }
+                    let _ = self.host.order(Order::Stop);
+                    self.desk.drop_by_hand();
+                    self.held_until = None;
                 }
                 (Command::Pause, Some(_)) => {
-                    if let Some(host) = &mut self.host {
-                        let _ = host.order(Order::Hold);
+                    let _ = self.host.order(Order::Hold);
+                    // What it has not begun is taken back, so that a person can do something in between.
+                    if !self.host.is_digits() && self.desk.withdraw() {
+                        self.host.withdraw();
                     }
                 }
                 (Command::Resume, Some((State::Paused, _))) => {
-                    // (a byte would tell a machine of digits what it has not asked for)
-                    if let Some(host) = self.host.as_mut().filter(|host| !host.is_digits()) {
-                        let _ = host.order(Order::GoOn);
-                    }
+                    self.desk.all();
+                    self.go_on();
                 }
                 (Command::Resume, Some((State::Stopped, _))) => {
                     self.wants_stop = false;
-                    let order = self.host.as_mut().map(|host| (host.order(Order::GoOn), host.is_linked()));
+                    let byte = self.host.order(Order::GoOn);
                     // Where nobody has answered a call yet, both ways are tried.
-                    if order.is_none_or(|(byte, is_linked)| byte.is_some() || !is_linked) {
+                    if byte.is_some() || !self.host.is_linked() {
                         self.shared.line.send(&[Order::GoOn.byte()])?;
                         self.take(Event::Host(vec![Order::GoOn.byte()]));
                     }
                     let mut view = lock(&self.shared.view);
-                    if self.host.is_none() {
+                    if !self.desk.has_drawing() {
                         view.state = State::Watching;
-                    } else if self.under_way.is_none() && view.done.targets == 0 {
+                    } else if view.done.targets == 0
+                        && (self.under_way.is_none() || self.desk.is_led_by_hand())
+                    {
                         view.state = State::Ready; // it was stopped before it began
+                    } else if self.desk.is_led_by_hand() {
+                        view.state = State::Paused;
                     }
                 }
                 _ => {}
@@ -182,13 +267,21 @@ impl<'a, W: Write> Engine<'a, W> {
         }
     }
 
+    /// A machine that holds does not, from now on.
+    pub(super) fn go_on(&mut self) {
+        // (a byte would tell a machine of digits what it has not asked for)
+        if !self.host.is_digits() {
+            let _ = self.host.order(Order::GoOn);
+        }
+    }
+
     /// The host's clock stands still while nothing can come of its patience.
     fn host_clock(&mut self, now: Duration, state: &State) -> Duration {
-        let is_digits = self.host.as_ref().is_none_or(Sender::is_digits);
+        let by_hand = self.desk.has_by_hand();
         let stands = match state {
-            State::Ready => true,
-            State::Stopped => !self.host.as_ref().is_some_and(Sender::is_linked),
-            State::Paused => is_digits && self.under_way.is_none(),
+            State::Ready | State::Watching => !by_hand && !self.host.is_linked(),
+            State::Stopped => !self.host.is_linked(),
+            State::Paused => self.host.is_digits() && self.under_way.is_none() && !by_hand,
             _ => false,
         };
         match (stands, self.frozen_since) {
@@ -205,11 +298,11 @@ impl<'a, W: Write> Engine<'a, W> {
     fn send(&mut self, host_now: Duration) -> Result<(), PortError> {
         let shared = self.shared;
         let stop_is_new = lock(&shared.stop_is_new);
-        let Some(host) = self.host.as_mut().filter(|_| !*stop_is_new) else {
+        if *stop_is_new {
             return Ok(());
-        };
-        let event = host.poll(host_now);
-        let bytes = host.bytes(host_now, LISTEN);
+        }
+        let event = self.host.poll(host_now);
+        let bytes = self.host.bytes(host_now, LISTEN);
         if let Some(event) = event {
             self.event(event);
         }
@@ -226,9 +319,16 @@ impl<'a, W: Write> Engine<'a, W> {
             HostEvent::Begun(next) => {
                 self.under_way = Some((next, now));
                 self.take(Event::Pen(next.pen));
+                if self.desk.is_led_by_hand() {
+                    self.note_by_hand(self.desk.reached_by_hand().saturating_add(1), GIVEN);
+                }
             }
             HostEvent::Reached(reached) => {
                 let began = self.under_way.take().map_or(now, |(_, began)| began);
+                if !self.done() {
+                    self.check_shape(reached.target);
+                    return;
+                }
                 let length_mm = self.pass(reached.target);
                 let mut view = lock(&self.shared.view);
                 view.pace.target(length_mm, now.saturating_sub(began));
@@ -237,9 +337,14 @@ impl<'a, W: Write> Engine<'a, W> {
             HostEvent::Notice(notice) => {
                 if let HostNotice::GaveUp { target, .. } | HostNotice::OutOfArea(target) = notice {
                     self.under_way = None;
-                    self.pass(target);
+                    if self.done() {
+                        self.pass(target);
+                    }
                 }
-                if self.host.as_ref().is_some_and(|host| host.ends_by(notice)) {
+                if matches!(notice, HostNotice::Refused(_)) {
+                    self.done();
+                }
+                if self.host.ends_by(notice) {
                     self.failure = Some(notice.to_string());
                 }
                 self.follow(notice);
@@ -247,6 +352,26 @@ impl<'a, W: Write> Engine<'a, W> {
                 self.take(Event::Note(format!("host: {notice}")));
             }
         }
+    }
+
+    /// A machine on the reliable link counts what it is told, by hand, too: with it another host goes on.
+    fn note_by_hand(&mut self, number: u64, became: &str) {
+        if !self.host.is_digits() {
+            self.take(Event::Note(format!("{BY_HAND}{number}{became}")));
+        }
+    }
+
+    /// What is under way is over; whether it was a part of the drawing.
+    fn done(&mut self) -> bool {
+        let (is_drawing, then) = self.desk.done();
+        if !is_drawing {
+            self.note_by_hand(self.desk.reached_by_hand(), REACHED);
+        }
+        lock(&self.shared.view).hand.rests = self.desk.is_idle();
+        if then == Some(Fed::Paused) {
+            self.wait_for(String::new());
+        }
+        is_drawing
     }
 
     /// The machine is stopped or goes on, whoever wanted it so.
@@ -265,11 +390,12 @@ impl<'a, W: Write> Engine<'a, W> {
         if self.is_resumed || self.settings.resume.is_none() {
             return;
         }
-        let Some((_, reached)) = self.host.as_ref().filter(|host| host.is_linked()).and_then(Sender::resumed)
-        else {
+        if !self.host.is_linked() {
             return;
-        };
+        }
+        let Some((_, reached)) = self.host.resumed() else { return };
         self.is_resumed = true;
+        (0..reached).for_each(|_| self.desk.skip());
         let mut view = lock(&self.shared.view);
         view.done.targets = view.done.targets.saturating_add(reached.into());
         view.reached = view.reached.saturating_add(reached.into());
@@ -287,7 +413,7 @@ impl<'a, W: Write> Engine<'a, W> {
     }
 
     /// Something happened: on the screen, and into the recording.
-    fn take(&mut self, event: Event) {
+    pub(super) fn take(&mut self, event: Event) {
         self.journal.take(event);
     }
 
@@ -298,7 +424,9 @@ impl<'a, W: Write> Engine<'a, W> {
         }
         let duty = self.telemetry.as_ref().map(|telemetry| lock(telemetry).duty);
         let [x, y] = self.settings.pwm_steps.map(|steps| f64::from(steps.max(1)));
+        let by_hand = self.desk.has_by_hand().then(|| self.desk.count());
         self.journal.sample(|view| {
+            view.by_hand = by_hand;
             if let Some(duty) = duty {
                 view.duty = Some([f64::from(duty[0]) / x, f64::from(duty[1]) / y]);
             }

@@ -4,16 +4,16 @@ use super::journal::Journal;
 use super::line::lock;
 use super::machine_log::Recording;
 use super::session::Shared;
+use super::session_settings::pen_wanted;
 use super::timetable::Timetable;
 use super::view::View;
-use super::{Command, Hand, State};
+use super::{Command, Hand, SessionSettings, State};
 use crate::log::Event;
 use crate::serial::PortError;
 use core::time::Duration;
 use plotter_motion::protocol::Wire;
 use plotter_motion::protocol::hosts::{HostState, HostStatus, MachineHost, MachineNotice, NotNow, Request};
-use plotter_motion::toolpath::{circle, rectangle};
-use plotter_motion::{Pen, PlotOp};
+use plotter_motion::{Pen, PlotOp, Point};
 use std::collections::VecDeque;
 use std::io::Write;
 
@@ -21,6 +21,13 @@ use std::io::Write;
 const LISTEN: Duration = Duration::from_millis(2);
 /// How often the recording says how far the drawing is, in the line's time: with it another host goes on.
 const MARK_EVERY: Duration = Duration::from_millis(100);
+/// A machine that says for so long to be at one place rests: it is asked five times a second, and the pen is
+/// lifted in between.
+const RESTS_FOR: Duration = Duration::from_secs(1);
+/// A machine has arrived that says so long to be where it was led: it is asked five times a second.
+const ARRIVED_FOR: Duration = Duration::from_millis(250);
+/// So near, mm: machines tell their place in hundredths of a millimetre, and in whole steps.
+const ARRIVED_MM: f64 = 0.05;
 /// Operations by hand that wait: a circle of ten thousand points, and more.
 const MOST_BY_HAND: usize = 20_000;
 
@@ -29,8 +36,15 @@ pub(super) struct HostedEngine<'a, W: Write> {
     drawing: Option<Timetable>,
     journal: Journal<'a, W>,
     wire: Wire,
+    pens: Vec<(u8, String)>,
     free: Duration,
     by_hand: VecDeque<PlotOp>,
+    /// Bytes that the line has not taken.
+    unsent: Vec<u8>,
+    shape: Shaped,
+    /// Where the machine was led by hand last, and where it says to be since when.
+    led_to: Option<Point>,
+    rests: Option<(Point, Duration)>,
     /// Time in which it was drawn, and since when it is.
     drawn: Duration,
     draws_since: Option<Duration>,
@@ -43,16 +57,21 @@ impl<'a, W: Write> HostedEngine<'a, W> {
         host: Box<dyn MachineHost + Send>,
         drawing: Option<Timetable>,
         recorder: Option<Recording<W>>,
-        baud: u32,
+        settings: SessionSettings,
         shared: &'a Shared,
     ) -> Self {
         Self {
             host,
             drawing,
             journal: Journal::new(recorder, shared),
-            wire: Wire::new(baud),
+            wire: Wire::new(settings.baud),
+            pens: settings.pens,
             free: Duration::ZERO,
             by_hand: VecDeque::new(),
+            unsent: Vec::new(),
+            shape: Shaped::default(),
+            led_to: None,
+            rests: None,
             drawn: Duration::ZERO,
             draws_since: None,
             marked: (Duration::ZERO, 0, 0),
@@ -113,6 +132,16 @@ impl<'a, W: Write> HostedEngine<'a, W> {
         if *stop_is_new {
             return Ok(()); // nothing older goes out behind a stop
         }
+        if !self.unsent.is_empty() {
+            // A machine that lets nothing through now: what is asked of it waits, and is not made up.
+            let sent = shared.line.offer(&self.unsent)?;
+            let gone: Vec<u8> = self.unsent.drain(..sent.min(self.unsent.len())).collect();
+            drop(stop_is_new);
+            if !gone.is_empty() {
+                self.take(Event::Host(gone));
+            }
+            return Ok(());
+        }
         let mut out = Vec::new();
         while self.free <= now.saturating_add(LISTEN) {
             let Some(byte) = self.host.next_byte(now) else { break };
@@ -120,8 +149,11 @@ impl<'a, W: Write> HostedEngine<'a, W> {
             out.push(byte);
         }
         if !out.is_empty() {
-            shared.line.send(&out)?;
-            self.take(Event::Host(out));
+            let sent = shared.line.offer(&out)?;
+            self.unsent = out.split_off(sent.min(out.len()));
+            if !out.is_empty() {
+                self.take(Event::Host(out));
+            }
         }
         Ok(())
     }
@@ -144,6 +176,7 @@ impl<'a, W: Write> HostedEngine<'a, W> {
                 Command::Pause => self.host.ask(now, Request::Pause),
                 Command::Stop => {
                     self.by_hand.clear();
+                    self.unsent.clear();
                     *lock(&self.shared.stop_is_new) = false;
                     let bytes = self.shared.stop_bytes().to_vec();
                     if !bytes.is_empty() {
@@ -151,7 +184,12 @@ impl<'a, W: Write> HostedEngine<'a, W> {
                     }
                     self.host.ask(now, Request::Stop)
                 }
-                Command::Hand(hand) => self.hand(now, hand),
+                Command::Hand(hand) => {
+                    self.led_to = None;
+                    let done = self.hand(now, hand);
+                    lock(&self.shared.view).hand.took(done.as_ref().err().map(ToString::to_string));
+                    done
+                }
             };
             if let Err(why) = done {
                 lock(&self.shared.view).message(now, why.to_string());
@@ -161,20 +199,24 @@ impl<'a, W: Write> HostedEngine<'a, W> {
 
     fn hand(&mut self, now: Duration, hand: Hand) -> Result<(), NotNow> {
         let here = self.host.status().at.unwrap_or_default();
-        let speed = |mm_s: f64| (mm_s > 0.0).then_some(mm_s);
+        let mut allowed_mm = None;
         let draws: Vec<PlotOp> = match hand {
             Hand::Next => return self.host.ask(now, Request::Next),
             // While a key is held pieces come ten times a second: what the machine has no room for, it need
             // not make, and where there is no word to end one, its pieces end by themselves.
             Hand::Jog(by, feed_mm_s) => match self.host.ask(now, Request::Jog { by, feed_mm_s }) {
                 Err(NotNow::Busy) => return Ok(()),
-                done => return done,
+                done => {
+                    self.led_to = Some(here + by);
+                    return done;
+                }
             },
             Hand::EndJog => match self.host.ask(now, Request::EndJog) {
                 Err(NotNow::NoWord) => return Ok(()),
                 done => return done,
             },
             Hand::GoTo(to) => vec![PlotOp::Travel { to }],
+            Hand::DrawTo(to, mm_s) => vec![PlotOp::Draw { to, feed_mm_s: (mm_s > 0.0).then_some(mm_s) }],
             Hand::Pen(Pen::Up) => vec![PlotOp::Travel { to: here }],
             Hand::Pen(Pen::Down) => vec![PlotOp::Draw { to: here, feed_mm_s: None }],
             Hand::PenDownAt(number) => return self.host.ask(now, Request::PenDownAt(number)),
@@ -182,26 +224,26 @@ impl<'a, W: Write> HostedEngine<'a, W> {
             Hand::Unlock => return self.host.ask(now, Request::Unlock),
             Hand::StandsAt(place) => return self.host.ask(now, Request::StandsAt(place)),
             Hand::Feed(percent) => return self.host.ask(now, Request::Feed { percent }),
-            Hand::Line(from, to, mm_s) => {
-                vec![PlotOp::Travel { to: from }, PlotOp::Draw { to, feed_mm_s: speed(mm_s) }]
+            Hand::Shape { shape, speed_mm_s, allowed_mm: allowed } => {
+                allowed_mm = allowed;
+                shape.ops(speed_mm_s)
             }
-            Hand::Rectangle(at, size, mm_s) => {
-                let sides = rectangle(at, size.x, size.y).map(|op| with_speed(op, speed(mm_s)));
-                sides.collect()
-            }
-            Hand::Circle(at, radius_mm, points, mm_s) => {
-                let chords = circle(at, radius_mm, points.into()).map(|op| with_speed(op, speed(mm_s)));
-                chords.collect()
-            }
+            Hand::Hold(_) | Hand::Pulse(..) | Hand::Origin(_) => return Err(NotNow::NoWord),
         };
-        if self.by_hand.len().saturating_add(draws.len()) > MOST_BY_HAND {
+        if draws.len() > MOST_BY_HAND {
             return Err(NotNow::Busy);
         }
         // What cannot be begun is not kept for later: nothing moves unasked.
+        if !self.by_hand.is_empty() {
+            return Err(NotNow::Busy);
+        }
+        let count = draws.len() as u64;
         let mut draws = draws.into_iter();
-        if let Some(first) = draws.next().filter(|_| self.by_hand.is_empty()) {
+        if let Some(first) = draws.next() {
             self.host.ask(now, Request::ByHand(first))?;
+            self.led_to = draws.as_slice().last().copied().unwrap_or(first).target();
             self.by_hand.extend(draws);
+            self.shape = Shaped { count, allowed_mm, ..Shaped::default() };
         }
         Ok(())
     }
@@ -214,6 +256,7 @@ impl<'a, W: Write> HostedEngine<'a, W> {
                     self.by_hand.pop_front();
                     if self.by_hand.is_empty() {
                         let to = op.target().unwrap_or_default();
+                        self.shape.ends_at = Some(to);
                         let _ = self.host.ask(now, Request::ByHand(PlotOp::Travel { to })); // lifted at its end
                     }
                 }
@@ -247,14 +290,13 @@ impl<'a, W: Write> HostedEngine<'a, W> {
         }
         let mut view = lock(&self.shared.view);
         let wants = match state {
-            HostState::PenWanted(_) | HostState::SheetWanted | HostState::Locked(_) | HostState::Stopped => {
+            HostState::PenWanted(pen) => pen_wanted(&self.pens, pen),
+            HostState::SheetWanted | HostState::Locked(_) | HostState::Stopped => {
                 MachineNotice::State(state).to_string()
             }
             _ => String::new(),
         };
-        if let Some(hosted) = &mut view.hosted {
-            hosted.wants = wants;
-        }
+        view.wants = wants;
         view.state = match state {
             HostState::Unheard => State::Connecting,
             HostState::Ready if self.drawing.is_none() => State::Watching,
@@ -289,8 +331,47 @@ impl<'a, W: Write> HostedEngine<'a, W> {
             return;
         }
         self.mark(false);
+        self.check_shape();
+        let waiting = self.by_hand.len() as u64;
+        let by_hand = (waiting > 0).then(|| (self.shape.count.saturating_sub(waiting), self.shape.count));
         let told = self.told();
-        self.journal.sample(|view| told.show(view));
+        self.journal.sample(|view| {
+            told.show(view);
+            view.by_hand = by_hand;
+        });
+    }
+
+    /// Once the machine rests behind a shape: says so if that is farther from its end than was allowed.
+    fn check_shape(&mut self) {
+        let now = self.now();
+        let Some(at) = self.host.status().at else { return };
+        let (was, since) = *self.rests.get_or_insert((at, now));
+        if was != at {
+            self.rests = Some((at, now));
+            return;
+        }
+        let for_long = |least| now.saturating_sub(since) >= least;
+        if self.by_hand.is_empty()
+            && for_long(ARRIVED_FOR)
+            && self.led_to.is_some_and(|to| to.distance(at) <= ARRIVED_MM)
+        {
+            lock(&self.shared.view).hand.rests = true;
+        }
+        if let (Some(end), Some(allowed_mm)) = (self.shape.ends_at, self.shape.allowed_mm)
+            && for_long(RESTS_FOR)
+        {
+            self.shape = Shaped::default();
+            let off_mm = at.distance(end);
+            if off_mm > allowed_mm {
+                lock(&self.shared.view).message(
+                    now,
+                    format!(
+                        "came to rest {off_mm:.3} mm from ({:.3}, {:.3}) mm: {allowed_mm} mm are allowed",
+                        end.x, end.y
+                    ),
+                );
+            }
+        }
     }
 
     /// What the host knows.
@@ -302,6 +383,16 @@ impl<'a, W: Write> HostedEngine<'a, W> {
         let rest = rest.map(|table| table.rest(status.done, drawn));
         Told { status, rest, way_mm: self.drawing.as_ref().map(|table| table.way_mm(status.done)) }
     }
+}
+
+/// A shape by hand, while it is drawn.
+#[derive(Clone, Copy, Debug, Default)]
+struct Shaped {
+    /// Its operations.
+    count: u64,
+    allowed_mm: Option<f64>,
+    /// Where it ends, once all of it is sent.
+    ends_at: Option<Point>,
 }
 
 /// What a host knows of its machine at one time.
@@ -326,10 +417,3 @@ impl Told {
 
 /// Before the numbers of operations done and sent, in a note of a recording.
 pub(crate) const MARK: &str = "host: operations done and sent: ";
-
-fn with_speed(op: PlotOp, mm_s: Option<f64>) -> PlotOp {
-    match op {
-        PlotOp::Draw { to, .. } => PlotOp::Draw { to, feed_mm_s: mm_s },
-        other => other,
-    }
-}

@@ -62,6 +62,14 @@ impl<W: Write + Send> Line for MachineLine<W> {
         Ok(())
     }
 
+    fn offer(&self, bytes: &[u8]) -> Result<usize, PortError> {
+        // What the machine lets through soon; a stop finds room in any case.
+        let room = SimulatedMachine::<W>::MOST_ON_LINE.saturating_sub(lock(&self.waiting).len());
+        let count = room.min(bytes.len());
+        self.send(bytes.get(..count).unwrap_or_default())?;
+        Ok(count)
+    }
+
     fn receive(&self, bytes: &mut [u8], wait: Duration) -> Result<usize, PortError> {
         let (machine, pace) = &mut *lock(&self.inside);
         let until = machine.now().saturating_add(wait.max(LEAST_WAIT));
@@ -76,7 +84,9 @@ impl<W: Write + Send> Line for MachineLine<W> {
             if early > LONGEST_WAIT {
                 return Ok(0); // its time has not come
             }
-            machine.take(&core::mem::take(&mut *lock(&self.waiting)));
+            if machine.has_line_room() {
+                machine.take(&core::mem::take(&mut *lock(&self.waiting)));
+            }
             machine.run_to(to);
         }
     }

@@ -11,7 +11,10 @@
 //! emergency stop goes past the session's own loop: whoever presses it writes it on the line at once
 //! ([`plotter_motion::protocol::Order::Stop`]).
 
+mod by_hand;
 mod commands;
+mod desk;
+mod drawing_step;
 mod engine;
 mod hosted;
 mod journal;
@@ -25,14 +28,17 @@ mod sender;
 mod server;
 mod session;
 mod session_settings;
+mod shape;
 mod showing;
 mod simulated;
 mod tcp_line;
+mod telling_belt;
 pub mod terminal;
 mod timetable;
 mod view;
 
 pub use commands::{Command, Hand, State};
+pub use drawing_step::{DrawingStep, drawing_steps};
 #[cfg(feature = "cli")]
 pub(crate) use hosted::MARK;
 pub use line::{Line, PortLine};
@@ -43,7 +49,9 @@ pub use progress::Plan;
 pub use server::{Server, ServerError};
 pub use session::Session;
 pub use session_settings::{LinkChoice, SessionSettings};
+pub use shape::Shape;
 pub use showing::Showing;
 pub use simulated::{SimulatedMachine, Spoken, Telemetry, Watch};
 pub use tcp_line::TcpLine;
 pub use timetable::Timetable;
+pub use view::HandProgress;

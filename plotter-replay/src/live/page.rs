@@ -7,6 +7,7 @@ use core::time::Duration;
 use plotter_motion::toolpath::chords;
 use plotter_motion::{Pen, PenMove, PlotOp, Point};
 use serde_json::json;
+use std::collections::HashMap;
 
 const BODY: &str = include_str!("../draw/page/assets/live.html");
 const PROGRAM: &str = include_str!("../draw/page/assets/live.js");
@@ -42,6 +43,14 @@ pub struct LivePage {
     pub facts: Vec<(String, String)>,
     /// Whether the machine is led by hand, too: the page has a panel for it.
     pub has_hand: bool,
+    /// Whether the machine is led by lines of text; else it takes targets.
+    pub is_lines: bool,
+    /// Whether a held key is one long move on which the drive grows.
+    pub ramps: bool,
+    /// Volts that full duty puts on the motors, where that is known.
+    pub supply_v: Option<[f64; 2]>,
+    /// Names of pens by their numbers, such as their colours.
+    pub pens: Vec<(u8, String)>,
     /// Whether nothing on the line tells where the pen is on its way: the page shows what is known to be
     /// done.
     pub shows_done: bool,
@@ -52,6 +61,7 @@ pub struct LivePage {
     takes: Option<Duration>,
     plan: Plan,
     at: plotter_motion::Point,
+    pen: u8,
     area_mm: Option<[f64; 4]>,
 }
 
@@ -66,6 +76,10 @@ impl LivePage {
             stops: String::new(),
             facts: Vec::new(),
             has_hand: false,
+            is_lines: false,
+            ramps: false,
+            supply_v: None,
+            pens: Vec::new(),
             shows_done: false,
             settings,
             meant: Desired::new(0.5 * settings.x_mm_per_pulse, MOST_DESIRED_POINTS),
@@ -73,6 +87,7 @@ impl LivePage {
             takes: None,
             plan: Plan::default(),
             at: settings.p1,
+            pen: 1,
             area_mm: None,
         }
     }
@@ -85,11 +100,29 @@ impl LivePage {
         if next.pen == Pen::Down {
             self.meant.line(self.at, to);
         }
-        for at in [self.at, to] {
+        self.covers(self.at, to);
+        self.at = to;
+        self.goes(to, next.pen == Pen::Down, self.pen);
+    }
+
+    /// What follows is drawn with this pen.
+    pub fn take_pen(&mut self, pen: u8) {
+        self.pen = pen;
+    }
+
+    fn covers(&mut self, from: Point, to: Point) {
+        for at in [from, to] {
             let [x0, y0, x1, y1] = self.area_mm.unwrap_or([at.x, at.y, at.x, at.y]);
             self.area_mm = Some([x0.min(at.x), y0.min(at.y), x1.max(at.x), y1.max(at.y)]);
         }
-        self.at = to;
+    }
+
+    /// The next of the drawing in its order, whose way so far is known.
+    fn goes(&mut self, to: Point, draws: bool, pen: u8) {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
+        let at_us = (self.plan.way_mm * 1e3) as u64;
+        let state = if draws { DRAWN | pen_bits(pen) } else { 0 };
+        self.order.push(TrailPoint { at_us, x_mm: to.x, y_mm: to.y, state });
     }
 
     /// Takes the next operation of the drawing, drawn from here with this pen.
@@ -102,19 +135,9 @@ impl LivePage {
             if !is_travel {
                 self.meant.line(at, to);
             }
-            for at in [at, to] {
-                let [x0, y0, x1, y1] = self.area_mm.unwrap_or([at.x, at.y, at.x, at.y]);
-                self.area_mm = Some([x0.min(at.x), y0.min(at.y), x1.max(at.x), y1.max(at.y)]);
-            }
+            self.covers(at, to);
             at = to;
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "a float cast saturates"
-            )]
-            let at_us = (self.plan.way_mm * 1e3) as u64;
-            let state = if is_travel { 0 } else { DRAWN | pen_bits(pen) };
-            self.order.push(TrailPoint { at_us, x_mm: to.x, y_mm: to.y, state });
+            self.goes(to, !is_travel, pen);
         }
         self.plan.targets = self.plan.targets.saturating_add(1);
     }
@@ -144,6 +167,11 @@ impl LivePage {
         let um = |mm: f64| libm::round(mm * 1e3);
         let data = json!({
             "hand": self.has_hand,
+            "lines": self.is_lines,
+            "ramps": self.ramps,
+            "supply_v": self.supply_v,
+            "p1": [self.settings.p1.x, self.settings.p1.y],
+            "pens": self.pens.iter().map(|(number, name)| (number.to_string(), name)).collect::<HashMap<_, _>>(),
             "by_done": self.shows_done,
             "takes_s": self.takes.map(|time| time.as_secs_f64()),
             "order": {

@@ -1,14 +1,15 @@
 //! [`Sender`]: the host of a session, by either protocol.
 
-use super::session::Moves;
+use super::desk::Tray;
 use super::{LinkChoice, SessionSettings};
 use core::time::Duration;
+use plotter_motion::PenMove;
 use plotter_motion::protocol::{
     Host, HostEvent, HostNotice, LinkHost, LinkSettings, LinkState, Order, Resume, Wire,
 };
 
 /// With room for so many frames that wait for their answers, and so many bytes in each.
-type Linked = LinkHost<Moves, 8, 128>;
+type Linked = LinkHost<Tray, 8, 128>;
 
 /// A host, and the line as far as it is free.
 pub(super) struct Sender {
@@ -20,17 +21,19 @@ pub(super) struct Sender {
 }
 
 enum Spoken {
-    Digits(Host<Moves>),
+    Digits(Host<Tray>),
     Linked(Box<Linked>),
 }
 
 impl Sender {
-    pub(super) fn new(settings: &SessionSettings, moves: Moves) -> Self {
+    pub(super) fn new(settings: &SessionSettings, moves: Tray) -> Self {
         let host = if settings.link == LinkChoice::Digits {
-            Spoken::Digits(Host::new(settings.byte_gap, settings.host, moves))
+            let host = Host::new(settings.byte_gap, settings.host, moves);
+            Spoken::Digits(host.staying().standing_at(settings.stands_at))
         } else {
             let link = LinkSettings::default();
             let host = LinkHost::new(settings.nonce, link, settings.byte_gap, settings.host, moves);
+            let host = host.staying();
             Spoken::Linked(Box::new(match settings.resume {
                 Some(resume) => host.resuming(resume),
                 None => host,
@@ -62,6 +65,29 @@ impl Sender {
                 None
             }
             _ => (order != Order::Hold).then_some(order.byte()),
+        }
+    }
+
+    /// Takes back what the machine has not begun; [`take_kept`](Self::take_kept) says what of it is left.
+    pub(super) fn withdraw(&mut self) {
+        if let Spoken::Linked(host) = &mut self.host {
+            host.withdraw();
+        }
+    }
+
+    /// How many moves the machine keeps, once it has said so.
+    pub(super) fn take_kept(&mut self) -> Option<usize> {
+        match &mut self.host {
+            Spoken::Digits(_) => None,
+            Spoken::Linked(host) => host.take_kept(),
+        }
+    }
+
+    /// Leads a machine of digits to another target than the one under way; says whether it does.
+    pub(super) fn redirect(&mut self, now: Duration, next: PenMove) -> bool {
+        match &mut self.host {
+            Spoken::Digits(host) => host.redirect(now, next),
+            Spoken::Linked(_) => false,
         }
     }
 

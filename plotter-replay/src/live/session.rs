@@ -1,16 +1,15 @@
 //! [`Session`]: a drawing on its way to a machine.
 
+use super::desk::Steps;
 use super::engine::Engine;
 use super::hosted::HostedEngine;
 use super::line::{Line, lock};
 use super::machine_log::Recording;
-use super::sender::Sender;
 use super::timetable::Timetable;
-use super::view::{Cursor, Hosted, View};
-use super::{Command, LinkChoice, SessionSettings, State, Telemetry};
+use super::view::{Cursor, HandProgress, Hosted, View};
+use super::{Command, DrawingStep, LinkChoice, SessionSettings, State, Telemetry};
 use crate::virtual_plotter::CountedBy;
 use core::time::Duration;
-use plotter_motion::PenMove;
 use plotter_motion::protocol::Order;
 use plotter_motion::protocol::hosts::MachineHost;
 use serde_json::Value;
@@ -42,25 +41,22 @@ pub(super) struct Shared {
     pub(super) finished: Condvar,
 }
 
-/// The moves of a drawing, in order.
-pub(super) type Moves = Box<dyn Iterator<Item = PenMove> + Send>;
-
 impl Session {
-    /// Opens a session on `line`. With `moves` it waits for [`Command::Start`]; without, it only watches.
-    /// What happens goes to `recorder`. What no byte tells of a simulated machine comes from `telemetry`.
+    /// Opens a session on `line`. With a drawing it waits for [`Command::Start`]; without, it watches, and
+    /// the machine is led by hand only: nothing is sent before somebody asks for it. What happens goes to `recorder`. What no byte tells of a simulated machine comes from `telemetry`.
     #[must_use]
     pub fn open<W: Write + Send + 'static>(
         line: Arc<dyn Line>,
-        moves: Option<Moves>,
+        drawing: Option<Box<dyn Iterator<Item = DrawingStep> + Send>>,
         recorder: Option<Recording<W>>,
         telemetry: Option<Arc<Mutex<Telemetry>>>,
         mut settings: SessionSettings,
     ) -> Self {
-        let may_be_linked = moves.is_some() && settings.link != LinkChoice::Digits;
+        let may_be_linked = settings.link != LinkChoice::Digits;
         if may_be_linked {
             settings.plotter.counted_by = CountedBy::Link;
         }
-        let state = if moves.is_some() { State::Ready } else { State::Watching };
+        let state = if drawing.is_some() { State::Ready } else { State::Watching };
         let mut view = View::new(settings.plotter, state, settings.plan);
         view.recording = String::from(if recorder.is_some() { "on" } else { "none" });
         let view = Mutex::new(view);
@@ -74,8 +70,8 @@ impl Session {
             finished: Condvar::new(),
         });
         let session = Self { shared: Arc::clone(&shared) };
-        let host = moves.map(|moves| Sender::new(&settings, moves));
-        thread::spawn(move || Engine::new(host, recorder, telemetry, settings, &shared).run());
+        let drawing: Option<Steps> = drawing;
+        thread::spawn(move || Engine::new(drawing, recorder, telemetry, settings, &shared).run());
         session
     }
 
@@ -103,7 +99,7 @@ impl Session {
             finished: Condvar::new(),
         });
         let session = Self { shared: Arc::clone(&shared) };
-        thread::spawn(move || HostedEngine::new(host, drawing, recorder, settings.baud, &shared).run());
+        thread::spawn(move || HostedEngine::new(host, drawing, recorder, settings, &shared).run());
         session
     }
 
@@ -132,6 +128,25 @@ impl Session {
     #[must_use]
     pub fn reached(&self) -> u64 {
         lock(&self.shared.view).reached
+    }
+
+    /// How far what was asked by hand is ([`Command::Hand`]).
+    #[must_use]
+    pub fn by_hand(&self) -> HandProgress {
+        let view = lock(&self.shared.view);
+        HandProgress { at: view.position(), ..view.hand.clone() }
+    }
+
+    /// What was said last, with its time on the line.
+    #[must_use]
+    pub fn messages(&self) -> Vec<(Duration, String)> {
+        lock(&self.shared.view).messages.iter().cloned().collect()
+    }
+
+    /// What a person has to do before it goes on; empty for nothing.
+    #[must_use]
+    pub fn wants(&self) -> String {
+        lock(&self.shared.view).wants.clone()
     }
 
     /// What became of the recording: `on`, `none`, `complete`, or why it stopped.

@@ -3,6 +3,7 @@
 use super::progress::Plan;
 use crate::PlotterSettings;
 use core::time::Duration;
+use plotter_motion::StepPoint;
 use plotter_motion::protocol::{HostSettings, Resume};
 
 /// What is spoken with the machine.
@@ -39,6 +40,17 @@ pub struct SessionSettings {
     pub baud: u32,
     /// Where another host has left the drawing; its moves are all of them, from the first.
     pub resume: Option<Resume>,
+    /// Greatest counts that a machine of targets reaches, where that is known.
+    pub most: Option<StepPoint>,
+    /// Least and greatest counts of the drawing on both axes, where they are known.
+    pub bounds: Option<(StepPoint, StepPoint)>,
+    /// Where the motors stand as the session begins, encoder counts.
+    pub stands_at: StepPoint,
+    /// Whether a held key is one long move that is ended when the key is let go, so that the machine's own
+    /// ramp grows on it; else it is one short move after the other. Only a machine of digits has it.
+    pub ramps: bool,
+    /// Names of pens by their numbers, such as their colours.
+    pub pens: Vec<(u8, String)>,
 }
 
 impl Default for SessionSettings {
@@ -54,6 +66,18 @@ impl Default for SessionSettings {
             nonce: 1,
             baud: 256_000,
             resume: None,
+            most: None,
+            bounds: None,
+            stands_at: StepPoint::default(),
+            ramps: false,
+            pens: Vec::new(),
         }
     }
+}
+
+/// What a person is told who is to put in a pen.
+pub(super) fn pen_wanted(pens: &[(u8, String)], pen: u8) -> String {
+    let name = pens.iter().find(|(number, _)| *number == pen);
+    let name = name.map_or_else(String::new, |(_, name)| format!(" ({name})"));
+    format!("pen {pen} is wanted{name}: put it in, then go on")
 }

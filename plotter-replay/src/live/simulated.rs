@@ -4,12 +4,13 @@ use super::line::{Line, lock};
 use super::machine_line::MachineLine;
 use super::machine_log::MachineLog;
 use super::pace::Pace;
+use super::telling_belt::TellingBelt;
 use super::{Command, Showing};
 use crate::log::{Event, Record};
-use crate::player::ControllerError;
+use crate::player::{AnsweringBoard, ControllerError};
 use crate::serial::{PortError, PortErrorKind};
 use crate::simulation::{
-    Act, ActError, Script, Seen, Simulation, Take, Told, World, belt, ebb, hpgl, marlin, steppers,
+    Act, ActError, Script, Seen, Simulation, Take, Told, World, ebb, hpgl, marlin, steppers,
 };
 use core::fmt;
 use core::time::Duration;
@@ -17,7 +18,9 @@ use plotter_motion::firmware::stepper_plotter::Dialect;
 use plotter_motion::firmware::{Gantry, LinkedGantry};
 use plotter_motion::plant::{Bench, BenchController, BenchEvent, BenchSettings};
 use plotter_motion::protocol::{LinkSettings, Order};
-use plotter_motion::{Axis, ConfigError, LimitSwitches, Machine, PenMove, SafetyGate, config::MachineKind};
+use plotter_motion::{
+    Axis, ConfigError, LimitSwitches, Machine, Pen, PenMove, SafetyGate, config::MachineKind,
+};
 use std::io::{Sink, Write};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
@@ -29,6 +32,8 @@ pub struct Telemetry {
     pub time: Duration,
     /// Duty of both motors, signed steps of their timers.
     pub duty: [i32; 2],
+    /// Where the pen belongs, of a machine that is told so.
+    pub pen: Option<Pen>,
     /// When the last emergency stop came, in the machine's time, and when both motors were off after it.
     pub stopped: Option<(Duration, Option<Duration>)>,
 }
@@ -36,8 +41,6 @@ pub struct Telemetry {
 /// How often a simulated machine and its host exchange their bytes, in the machine's time: the frame of
 /// full-speed USB, in which an adapter hands on what has come (USB 2.0, section 8.4.3).
 pub(super) const EXCHANGE_EVERY: Duration = Duration::from_millis(1);
-/// Bytes of a host that are on the line at most; more wait until these are through.
-const MOST_ON_LINE: usize = 512;
 /// Bytes of the machine that wait for a host to read them.
 const MOST_UNREAD: usize = 16_384;
 /// How long a machine that is ahead of the clock listens at most at once.
@@ -105,7 +108,7 @@ pub enum Spoken {
 }
 
 /// A machine whose time passes step by step, whatever its controller.
-trait Steps {
+pub(super) trait Steps {
     fn now(&self) -> Duration;
     fn byte(&mut self, byte: u8);
     /// Bytes of the host that have not come through yet, where a machine tells.
@@ -113,6 +116,10 @@ trait Steps {
     fn step(&mut self, sink: Take<'_>);
     fn act(&mut self, act: &Act) -> Result<(), ActError>;
     fn seen(&self) -> Seen;
+    /// What it has said since the last time that its log has in another form.
+    fn said(&mut self) -> Vec<u8> {
+        Vec::new()
+    }
 }
 
 impl<C: BenchController> Steps for Bench<std::iter::Empty<PenMove>, C> {
@@ -151,7 +158,7 @@ impl<C: BenchController> Steps for Bench<std::iter::Empty<PenMove>, C> {
     fn seen(&self) -> Seen {
         let drives = Axis::BOTH.map(|axis| self.controller().drive().axis(axis).value() != 0.0);
         let doing = if drives == [false; 2] { "idle" } else { "draws" };
-        Seen { doing, at: self.position_mm(), ..Seen::default() }
+        Seen { doing, at: self.position_mm(), pen: self.controller().pen(), ..Seen::default() }
     }
 }
 
@@ -177,6 +184,9 @@ impl<C: Told, W: World> Steps for Simulation<C, W> {
 }
 
 impl SimulatedMachine {
+    /// Duty steps that are the whole supply of a belt's motors, as its log and [`Telemetry`] have them.
+    pub const BELT_PWM_STEPS: u32 = AnsweringBoard::PWM_STEPS as u32;
+
     /// `machine` at rest at its origin. It speaks digits, and with a `boot` frames with a host that calls;
     /// that is its number since it was switched on, another one each time.
     ///
@@ -209,7 +219,7 @@ impl SimulatedMachine {
     pub fn speaking(machine: &Machine, spoken: Spoken) -> Result<Self, ControllerError> {
         let refused = |error: ConfigError| ControllerError { message: error.to_string() };
         let bench: Box<dyn Steps + Send> = match (spoken, machine.kind()) {
-            (Spoken::Digits, MachineKind::Belt) => Box::new(belt(machine)),
+            (Spoken::Digits, MachineKind::Belt) => Box::new(TellingBelt::new(machine)),
             (Spoken::Digits | Spoken::Link { .. }, _) => {
                 machine
                     .require(MachineKind::Gantry, "what is simulated with digits or frames")
@@ -324,7 +334,7 @@ impl<W: Write> SimulatedMachine<W> {
             let to = self.now().saturating_add(EXCHANGE_EVERY);
             let early = pace.wait(Instant::now(), to);
             // What does not fit on the line waits at the host's end of it, as behind an adapter on USB.
-            if self.bench.on_line() < MOST_ON_LINE {
+            if self.has_line_room() {
                 let count = line.receive(&mut bytes, early.min(LISTEN))?;
                 self.take(bytes.get(..count).unwrap_or_default());
             } else {
@@ -374,6 +384,14 @@ impl<W: Write> SimulatedMachine<W> {
         self.bench.now()
     }
 
+    /// Bytes of a host that are on the line at most; more wait until these are through.
+    pub(super) const MOST_ON_LINE: usize = 512;
+
+    /// Whether more bytes of the host may go on the line.
+    pub(super) fn has_line_room(&self) -> bool {
+        self.bench.on_line() < Self::MOST_ON_LINE
+    }
+
     /// Takes bytes of the host, which go over the line now.
     pub(super) fn take(&mut self, bytes: &[u8]) {
         bytes.iter().for_each(|&byte| self.bench.byte(byte));
@@ -391,6 +409,7 @@ impl<W: Write> SimulatedMachine<W> {
     /// Goes on until `to`, by whole time steps.
     pub(super) fn run_to(&mut self, to: Duration) {
         let Self { bench, log, answers, told, telemetry, script, showing, .. } = self;
+        let mut new = Vec::new();
         while bench.now() < to {
             for act in script.due(bench.now()) {
                 if let (Err(error), Some(log)) = (bench.act(&act), &log) {
@@ -403,7 +422,7 @@ impl<W: Write> SimulatedMachine<W> {
                     Event::Host(bytes) if **bytes == [Order::Stop.byte()] && told.duty != [0; 2] => {
                         told.stopped = Some((at, None));
                     }
-                    Event::Controller(bytes) => answers.extend(bytes),
+                    Event::Controller(bytes) => new.extend(bytes),
                     Event::Drive { axis: Axis::X, duty } => told.duty[0] = *duty,
                     Event::Drive { axis: Axis::Y, duty } => told.duty[1] = *duty,
                     _ => {}
@@ -415,13 +434,15 @@ impl<W: Write> SimulatedMachine<W> {
                     log.record(at, event);
                 }
             });
+            answers.append(&mut bench.said());
+            answers.append(&mut new);
             if let Some((_, off @ None)) = &mut told.stopped
                 && told.duty == [0, 0]
             {
                 *off = Some(bench.now());
             }
         }
-        told.time = bench.now();
+        (told.time, told.pen) = (bench.now(), bench.seen().pen);
         *lock(telemetry) = *told;
         if let Some(log) = log {
             log.tick(told.time);

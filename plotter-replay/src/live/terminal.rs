@@ -3,7 +3,7 @@
 use super::view::View;
 use super::{Command, Hand, Session};
 use core::time::Duration;
-use plotter_motion::{Pen, Point, Vec2};
+use plotter_motion::{Axis as MotorAxis, Direction, Pen, Point, Vec2};
 use ratatui::Frame;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers};
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -31,16 +31,17 @@ pub struct Heading {
 }
 
 /// Shows a session in the terminal until it ends or the user quits; says whether he did. Enter starts, space
-/// pauses and resumes, Esc stops, c clears, q quits. A machine that is led by lines is led by hand, too: the
-/// arrows move it by the step that 1, 2 and 3 choose (0.1, 1, 10 mm), u and d lift and lower its pen, h leads
-/// it home, l unlocks it, n draws the next operation only, o says that it is at the origin.
+/// pauses and resumes, Esc stops, c clears, q quits. By hand the arrows move the machine by the step that 1, 2
+/// and 3 choose (0.1, 1, 10 mm), u and d lift and lower its pen, h leads it home, l unlocks it, n or + draws
+/// the next operation only, o says that it is at the origin. On a machine of targets the space bar gives a
+/// pulse in a direction of chance before the drawing begins, as the published program has it.
 ///
 /// # Errors
 ///
 /// The terminal cannot be read or written.
 pub fn run(session: &Session, heading: &Heading) -> io::Result<bool> {
     let mut terminal = ratatui::try_init()?;
-    let is_led = session.look(|view| view.hosted.is_some());
+    let is_lines = session.look(|view| view.hosted.is_some());
     let mut step_mm = 10.0;
     let result = (|| {
         loop {
@@ -62,21 +63,32 @@ pub fn run(session: &Session, heading: &Heading) -> io::Result<bool> {
                 KeyCode::Enter => session.command(Command::Start),
                 KeyCode::Char('c') => session.command(Command::Clear),
                 KeyCode::Char('q') => return Ok(true),
+                KeyCode::Char(' ') if !is_lines && matches!(session.state().name(), "ready" | "watching") => {
+                    session.command(Command::Hand(random_pulse()));
+                }
                 KeyCode::Char(' ') => {
                     let running = session.state().name() == "running";
                     session.command(if running { Command::Pause } else { Command::Resume });
                 }
-                code if is_led => {
+                code => {
                     if let Some(hand) = by_hand(code, &mut step_mm) {
                         session.command(Command::Hand(hand));
                     }
                 }
-                _ => {}
             }
         }
     })();
     ratatui::try_restore()?;
     result
+}
+
+/// A count in a direction of chance.
+fn random_pulse() -> Hand {
+    let mut byte = [0];
+    let _ = getrandom::fill(&mut byte); // (without chance it is always the same one)
+    let [byte] = byte;
+    let axis = if byte & 1 == 0 { MotorAxis::X } else { MotorAxis::Y };
+    Hand::Pulse(axis, if byte & 2 == 0 { Direction::Plus } else { Direction::Minus })
 }
 
 /// Speed of a movement by hand, mm/s: slow enough for a hand at the switch.
@@ -95,7 +107,7 @@ fn by_hand(key: KeyCode, step_mm: &mut f64) -> Option<Hand> {
         KeyCode::Char('d') => Some(Hand::Pen(Pen::Down)),
         KeyCode::Char('h') => Some(Hand::Home),
         KeyCode::Char('l') => Some(Hand::Unlock),
-        KeyCode::Char('n') => Some(Hand::Next),
+        KeyCode::Char('n' | '+') => Some(Hand::Next),
         KeyCode::Char('o') => Some(Hand::StandsAt(Point::ORIGIN)),
         KeyCode::Char(number @ '1'..='3') => {
             *step_mm = match number {
@@ -145,10 +157,10 @@ fn draw_heading(frame: &mut Frame<'_>, area: Rect, view: &View, heading: &Headin
     let keys = if view.hosted.is_some() {
         "Esc EMERGENCY STOP  Enter start  Space pause/resume  arrows 1 2 3 u d h l n o by hand  q quit"
     } else {
-        "Esc EMERGENCY STOP  Enter start  Space pause/resume  c clear  q quit"
+        "Esc EMERGENCY STOP  Enter start  Space pause/resume  arrows 1 2 3 u d n o by hand  c clear  q quit"
     };
     // What a person has to do comes before what was said last.
-    let wants = view.hosted.as_ref().map(|hosted| hosted.wants.clone()).unwrap_or_default();
+    let wants = view.wants.clone();
     let second =
         [wants, message].into_iter().find(|words| !words.is_empty()).unwrap_or_else(|| keys.to_owned());
     frame.render_widget(Paragraph::new(vec![first, Line::raw(second)]), words);

@@ -31,14 +31,32 @@ pub(super) struct Sample {
     pub(super) target: Option<Point>,
 }
 
+/// How far what was asked by hand is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct HandProgress {
+    /// What was asked by hand and came to the session, done or refused.
+    pub taken: u64,
+    /// Why the last of it was refused, if it was.
+    pub refused: Option<String>,
+    /// Whether the machine rests where it was led.
+    pub rests: bool,
+    /// Where it says to be, mm on the sheet.
+    pub at: Point,
+}
+
+impl HandProgress {
+    pub(super) fn took(&mut self, refused: Option<String>) {
+        self.taken = self.taken.saturating_add(1);
+        (self.refused, self.rests) = (refused, false);
+    }
+}
+
 /// What a host of lines tells of its machine.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Hosted {
     /// Where the machine said to be.
     pub(super) at: Option<Point>,
     pub(super) is_down: bool,
-    /// What a person has to do, if anything.
-    pub(super) wants: String,
     pub(super) feed_percent: u8,
     /// How long the rest of the drawing takes.
     pub(super) rest: Option<Duration>,
@@ -69,6 +87,12 @@ pub(super) struct View {
     pub(super) recording: String,
     /// What a host of lines tells of its machine.
     pub(super) hosted: Option<Hosted>,
+    /// What a person has to do, if anything.
+    pub(super) wants: String,
+    /// Moves of what is done by hand: done, and all.
+    pub(super) by_hand: Option<(u64, u64)>,
+    /// How far what was asked by hand is.
+    pub(super) hand: HandProgress,
     /// Counts how often the way was cleared.
     pub(super) cleared: u32,
     from: Point,
@@ -112,6 +136,9 @@ impl View {
             worst_mm: 0.0,
             recording: String::new(),
             hosted: None,
+            wants: String::new(),
+            by_hand: None,
+            hand: HandProgress::default(),
             cleared: 0,
             tolerance_mm,
             edges: 0,
@@ -199,6 +226,14 @@ impl View {
         self.cleared = self.cleared.wrapping_add(1);
     }
 
+    /// The place (0, 0) of the motors lies here on the sheet from now on; what was drawn before is forgotten,
+    /// on the screen only.
+    pub(super) fn set_origin(&mut self, p1: Point) {
+        self.plotter.set_p1(p1);
+        self.from = self.plotter.position();
+        self.clear();
+    }
+
     /// Speed of both motors, mm/s, over the last tenth of a second.
     pub(super) fn speed_mm_s(&self) -> [f64; 2] {
         let Some(last) = self.samples.back() else {
@@ -235,6 +270,7 @@ impl View {
         let samples: Vec<Value> = self.samples.iter().skip(known).map(sample_json).collect();
         cursor.samples = self.samples_gone.saturating_add(self.samples.len() as u64);
         let (at, next) = (self.position(), self.plotter.next_target());
+        let p1 = self.plotter.settings().p1;
         json!({
             "state": self.state.name(),
             "failure": match &self.state { State::Failed(why) => Some(why), _ => None },
@@ -243,7 +279,9 @@ impl View {
             "counts": counts(self.plotter.raw_counts()),
             "next": next.map(|next| [next.x, next.y]),
             "pen": if self.is_down() { "down" } else { "up" },
-            "wants": self.hosted.as_ref().map(|hosted| &hosted.wants),
+            "wants": self.wants,
+            "by_hand": self.by_hand.map(|(done, all)| [done, all]),
+            "p1": [p1.x, p1.y],
             "way_mm": self.hosted.as_ref().and_then(|hosted| hosted.way_mm),
             "feed_percent": self.hosted.as_ref().map(|hosted| hosted.feed_percent),
             "speed_mm_s": self.speed_mm_s(),

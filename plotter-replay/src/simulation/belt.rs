@@ -111,7 +111,9 @@ impl World for Belt {
     fn target(&self, counts: StepPoint) -> Option<StepPoint> {
         let MarkingBoardSettings { belt, start, most, .. } = self.settings;
         let at = Point::new(f64::from(counts.x) * self.mm_per_count, f64::from(counts.y) * self.mm_per_count);
-        let inside = at.x <= most.x && at.y <= most.y;
+        // (a count at the border is inside, however that is rounded)
+        let half = 0.5 * self.mm_per_count;
+        let inside = at.x <= most.x + half && at.y <= most.y + half;
         inside.then(|| belt.steps_at(Point::ORIGIN + (at - start)))
     }
 }

@@ -28,4 +28,8 @@ impl Told for Hpgl {
     fn told(&self, now: Duration) -> (&'static str, Option<f64>) {
         self.plotter().told(now)
     }
+
+    fn lets_bytes_through(&self) -> bool {
+        Self::lets_bytes_through(self)
+    }
 }

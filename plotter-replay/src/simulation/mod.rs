@@ -16,7 +16,7 @@ mod script;
 mod steppers;
 
 pub use act::{Act, ActError};
-pub(crate) use belt::belt;
+pub(crate) use belt::{Belt, belt};
 pub(crate) use ebb::ebb;
 pub(crate) use fronts::{hpgl, marlin};
 pub use script::{Script, ScriptError};
@@ -87,6 +87,11 @@ pub(crate) trait Told: Controller {
     /// Activity, in a word, and the power of the laser.
     fn told(&self, now: Duration) -> (&'static str, Option<f64>);
 
+    /// Whether it lets bytes through: by a line of its cable that the host's end of it goes by.
+    fn lets_bytes_through(&self) -> bool {
+        true
+    }
+
     /// Which way it counts the pulses of a motor whose encoder does not tell.
     fn counting(&self, _motor: Axis) -> Option<Direction> {
         None
@@ -143,6 +148,10 @@ impl<C: Told, W: World> Simulation<C, W> {
         self.on_line.len()
     }
 
+    pub(crate) fn controller(&self) -> &C {
+        self.run.controller()
+    }
+
     pub(crate) fn act(&mut self, act: &Act) -> Result<(), ActError> {
         let events = self.world.act(act)?;
         self.acts.extend(events);
@@ -162,7 +171,8 @@ impl<C: Told, W: World> Simulation<C, W> {
     pub(crate) fn step(&mut self, sink: Take<'_>) {
         let to = self.run.now().saturating_add(self.world.slice());
         loop {
-            let next = self.on_line.front().map(|&(through, _)| through);
+            let lets = self.run.controller().lets_bytes_through();
+            let next = self.on_line.front().filter(|_| lets).map(|&(through, _)| through);
             let due = [self.run.controller().next_tick(), next].into_iter().flatten().min();
             let at = due.map_or(to, |due| due.max(self.run.now())).min(to);
             if let Err(stuck) = self.go_on(at, sink) {
@@ -201,7 +211,9 @@ impl<C: Told, W: World> Simulation<C, W> {
             };
             self.feed(at, event, sink)?;
         }
-        while self.on_line.front().is_some_and(|&(through, _)| through <= at) {
+        while self.run.controller().lets_bytes_through()
+            && self.on_line.front().is_some_and(|&(through, _)| through <= at)
+        {
             let Some((_, byte)) = self.on_line.pop_front() else { break };
             self.run.advance(at)?;
             self.tell(at, sink);

@@ -274,6 +274,11 @@ impl VirtualPlotter {
         &self.settings
     }
 
+    /// Position (0, 0) of the motors lies at another place of the sheet from now on, mm.
+    pub fn set_p1(&mut self, p1: Point) {
+        self.settings.p1 = p1;
+    }
+
     /// Where the pen is on the sheet, mm: the resynchronized track.
     #[must_use]
     pub fn position(&self) -> Point {

@@ -98,7 +98,7 @@ pub struct SettingsError {
 
 impl PlotterSettings {
     /// The defaults with what a log's header says: `x_mm_per_pulse`, `y_mm_per_pulse`, `p1_x_mm`, `p1_y_mm`,
-    /// `resync_gap_ms`, `reached_tolerance_counts`, `belt_signs` and `protocol`, each optional.
+    /// `begins_x_mm` and `begins_y_mm`, `resync_gap_ms`, `reached_tolerance_counts`, `belt_signs` and `protocol`, each optional.
     ///
     /// # Errors
     ///
@@ -153,6 +153,14 @@ impl PlotterSettings {
             ),
             belt,
             counted_by,
+            begins_at: if header.has("begins_x_mm") || header.has("begins_y_mm") {
+                Some(Point::new(
+                    number("begins_x_mm", "a number within 1e6 mm", place, 0.0)?,
+                    number("begins_y_mm", "a number within 1e6 mm", place, 0.0)?,
+                ))
+            } else {
+                None
+            },
             #[expect(
                 clippy::cast_possible_truncation,
                 clippy::cast_sign_loss,

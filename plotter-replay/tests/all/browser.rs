@@ -394,7 +394,9 @@ fn the_button_stops_a_simulated_machine_and_the_page_says_that_it_is_one() {
     browser.open(&address);
     assert_eq!(browser.text("#kind"), "SIMULATED MACHINE");
     browser.wait_for("last && Math.hypot(...last.speed_mm_s) > 20");
-    assert!(browser.value("duty x").ends_with('%'), "{}", browser.value("duty x"));
+    // The share of the supply, and what that is.
+    let duty = browser.value("duty x");
+    assert!(duty.contains(" %, ") && duty.ends_with(" V"), "{duty}");
     // From the click to the first update that has both motors off, by the browser's own clock.
     let ms = browser.eval(
         "new Promise((done) => { const clicked = performance.now(); document.getElementById('stop').click(); \
@@ -605,4 +607,123 @@ fn a_grbl_machine_is_led_by_hand_started_paused_changes_its_pen_is_stopped_and_f
         Command::new(PROGRAM).args(["info", "session.plog"]).current_dir(here.path()).output().unwrap();
     let info = String::from_utf8(info.stdout).unwrap();
     assert!(info.contains("nothing lost"), "{info}");
+}
+
+/// A square with a second pen, some six seconds.
+const TARGETS_OF_TWO_PENS: &str = "IN;SP1;PU800,800;PD2800,800,2800,2800;SP2;PD800,2800,800,800;PU0,0;";
+
+#[test]
+#[ignore = "needs a browser: .ci/browser"]
+fn a_machine_of_targets_is_led_by_hand_on_two_pages_and_changes_its_pen() {
+    let here = tempfile::tempdir().unwrap();
+    set_up(here.path());
+    std::fs::write(here.path().join("drawing.hpgl"), TARGETS_OF_TWO_PENS).unwrap();
+    let (_machine, mut said) = Running::start(&["simulate", "machine.toml"], here.path());
+    let port = said().split_once(" is simulated on ").unwrap().1.to_owned();
+    let (mut live, mut said) = Running::start(
+        &[
+            "live",
+            "--port",
+            &port,
+            "--machine",
+            "machine.toml",
+            "drawing.hpgl",
+            "--pen",
+            "2=crimson",
+            "-o",
+            "session.plog",
+        ],
+        here.path(),
+    );
+    said();
+    let address = said().strip_prefix("look at ").unwrap().to_owned();
+    let mut browser = Browser::start();
+    for [width, height] in [[320, 568], [390, 844], [860, 600], [1280, 800]] {
+        browser.screen(width, height, true);
+        browser.open(&address);
+        browser.wait_for("document.body.dataset.state === 'ready'");
+        assert_eq!(browser.eval("document.documentElement.scrollWidth"), json!(width), "wider than {width}");
+        for scheme in ["dark", "light"] {
+            browser.scheme(scheme);
+            browser.painted();
+            browser.screenshot(&format!("targets-{width}x{height}-{scheme}"));
+        }
+    }
+    browser.screen(1280, 800, false);
+    browser.open(&address);
+    // The page is opened twice: both show the same, and lead the same machine.
+    let mut other = Browser::start();
+    other.open(&address);
+    for page in [&mut browser, &mut other] {
+        page.wait_for("document.body.dataset.state === 'ready'");
+        // The drawing before it begins: its time, and how much of it the slider shows.
+        assert!(page.value("remaining").ends_with(" s"), "{}", page.value("remaining"));
+        assert_eq!(page.eval("$('preview').hidden"), json!(false));
+        assert_eq!(page.eval("getComputedStyle(document.querySelector('.lines')).display"), json!("none"));
+    }
+    let whole = browser.eval("document.getElementById('sheet').toDataURL()");
+    browser.eval("$('order').value = 300; $('order').dispatchEvent(new Event('input'))");
+    assert_ne!(browser.eval("document.getElementById('sheet').toDataURL()"), whole);
+
+    browser.eval("document.body.focus()");
+    browser.key("ArrowRight", 39);
+    for page in [&mut browser, &mut other] {
+        page.wait_for("Math.abs(last.at[0] - 10) < 0.03");
+    }
+    // The published program's keys: a pulse, and one in a direction of chance.
+    other.eval("document.body.focus()");
+    other.key("3", 51);
+    browser.wait_for("Math.abs(last.at[1] - 0.025) < 1e-6");
+    browser.key(" ", 32);
+    browser.wait_for("Math.abs(Math.abs(last.at[0] - 10) + Math.abs(last.at[1] - 0.025) - 0.025) < 1e-6");
+    browser.eval("$('step').value = '0'; jog('0 1')");
+    browser.wait_for("last.at[1] > 3");
+    browser.eval("letGo()");
+    browser.wait_for("last.speed_mm_s.every((v) => v === 0)");
+    assert!(browser.eval("last.at[1]").as_f64().unwrap() < 60.0);
+    // The origin, by P1X and P1Y; the drawing would lead outside from there.
+    browser.eval("$('p1-x').value = 22000; $('p1-y').value = 400");
+    browser.click("#p1");
+    browser.wait_for("Math.abs(last.p1[0] + 550) < 0.01");
+    browser.click("#start");
+    browser.wait_for("last.messages.some(([, words]) => words.includes('leads outside'))");
+    assert_eq!(browser.eval("document.body.dataset.state"), json!("ready"));
+    browser.eval("$('p1-x').value = 0; $('p1-y').value = 0");
+    browser.click("#p1");
+    browser.wait_for("last.p1[0] === 0");
+    // A shape by numbers, with its points counted.
+    browser.eval(
+        "$('shape').value = 'circle'; $('shape').dispatchEvent(new Event('change')); $('shape-x').value = 5; \
+                  $('shape-y').value = 20; $('shape-a').value = 5; $('shape-b').value = 12",
+    );
+    browser.eval("document.querySelector('#hand details').open = true; $('draw-shape').scrollIntoView({ block: 'center' })");
+    browser.painted();
+    browser.click("#draw-shape");
+    browser.wait_for("last.by_hand && last.by_hand[1] === 13 && last.by_hand[0] > 3 && last.pen === 'down'");
+    browser.screenshot("targets-by-hand");
+    browser.wait_for("last.by_hand === null && last.pen === 'up'");
+
+    browser.key("+", 187); // the next target only
+    browser.wait_for("document.body.dataset.state === 'paused' && last.reached === 1");
+    other.click("#resume");
+    // The other pen is waited for, by its name.
+    browser.wait_for(
+        "document.body.dataset.state === 'paused' && last.wants.startsWith('pen 2 is wanted (crimson)')",
+    );
+    browser.screenshot("targets-pen");
+    assert!(browser.text("#banner").starts_with("Pen 2 is wanted (crimson)"));
+    assert_eq!(browser.eval("getComputedStyle($('banner')).borderLeftColor"), json!("rgb(220, 20, 60)"));
+    browser.click("#resume");
+    browser.wait_for("document.body.dataset.state === 'running' && Math.hypot(...last.speed_mm_s) > 10");
+    // Stopped on one page, let go on the other.
+    other.key("Escape", 27);
+    browser.wait_for("document.body.dataset.state === 'stopped'");
+    browser.click("#resume");
+    for page in [&mut browser, &mut other] {
+        page.wait_for("document.body.dataset.state === 'done'");
+        assert_eq!(page.value("targets done"), "6 of 6");
+        assert_eq!(page.complaints, Vec::<String>::new());
+    }
+    browser.screenshot("targets-done");
+    assert_eq!(live.finish(), (Some(0), String::new()));
 }

@@ -1,7 +1,9 @@
 //! The host of HPGL with a simulated 7475A at the other end.
 
 use crate::driven::{Desk, drawing};
-use plotter_motion::protocol::hosts::{HostState, Hpgl, LineHost, LineHostSettings, MachineNotice, Request};
+use plotter_motion::protocol::hosts::{
+    HostState, Hpgl, HpglFlow, LineHost, LineHostSettings, MachineNotice, Request,
+};
 use plotter_motion::{Axis, Machine, MachineConfig, PlotOp, Point};
 use plotter_replay::live::Spoken;
 use plotter_replay::log::Event;
@@ -10,7 +12,7 @@ use std::time::Duration;
 const LONG: Duration = Duration::from_secs(3_600);
 
 /// 20 steps to the millimetre: a step is two units of HPGL.
-fn machine() -> Machine {
+pub(crate) fn machine() -> Machine {
     let mut config = MachineConfig::stepper_plotter();
     (config.area.width_mm, config.area.height_mm) = (60.0, 40.0);
     (config.homing.known_travel_mm, config.homing.max_travel_mm) = (0.0, 80.0);
@@ -22,7 +24,11 @@ fn machine() -> Machine {
 }
 
 fn desk(ops: Vec<PlotOp>) -> Desk {
-    let host = LineHost::new(Hpgl::new(), LineHostSettings::default(), ops.into_iter());
+    desk_with(HpglFlow::Asked, ops)
+}
+
+fn desk_with(flow: HpglFlow, ops: Vec<PlotOp>) -> Desk {
+    let host = LineHost::new(Hpgl::new().with_flow(flow), LineHostSettings::default(), ops.into_iter());
     let mut desk = Desk::new(Box::new(host), &machine(), Spoken::Hpgl, "");
     assert_eq!(desk.until(&[HostState::Ready], LONG), HostState::Ready, "{:?}", desk.notices);
     desk
@@ -43,9 +49,15 @@ fn end(desk: &Desk) -> (i32, i32) {
 
 #[test]
 fn a_drawing_is_whole_and_the_buffer_never_overflows() {
+    for flow in [HpglFlow::Asked, HpglFlow::XonXoff, HpglFlow::Dtr] {
+        whole(flow);
+    }
+}
+
+fn whole(flow: HpglFlow) {
     // Ten times as much as the buffer holds.
     let ops: Vec<PlotOp> = drawing().into_iter().cycle().take(10 * drawing().len()).collect();
-    let mut desk = desk(ops.clone());
+    let mut desk = desk_with(flow, ops.clone());
     desk.ask(Request::GoOn);
     assert_eq!(desk.until(&[HostState::Done], LONG), HostState::Done, "{:?}", desk.notices);
     // An overflow would be told at the end, as error 216.
@@ -53,6 +65,22 @@ fn a_drawing_is_whole_and_the_buffer_never_overflows() {
     assert_eq!(desk.host.status().sent, ops.len() as u64);
     assert_eq!(end(&desk), (80, 80));
     assert!(desk.sent.len() > 10_000, "{}", desk.sent.len());
+    let has = |words: &[u8]| desk.sent.windows(words.len()).filter(|part| *part == words).count();
+    let heard = |byte: u8| {
+        let said = desk.events();
+        said.iter().filter(|e| matches!(&e.1, Event::Controller(bytes) if bytes.contains(&byte))).count()
+    };
+    match flow {
+        HpglFlow::XonXoff => {
+            assert!(heard(0x13) > 5, "XOFF came {} times", heard(0x13));
+            assert!(heard(0x11) >= heard(0x13), "XON came {} times", heard(0x11));
+            assert!(has(b"\x1b.@;0:\x1b.I128;;17:\x1b.N;19:") > 0);
+        }
+        HpglFlow::Dtr => assert!(has(b"\x1b.@;1:") > 0 && heard(0x13) == 0),
+        _ => assert!(has(b"\x1b.B") > 100),
+    }
+    // Where lines are not answered, room is not asked for but while the place at the end is waited for.
+    assert!(flow == HpglFlow::Asked || has(b"\x1b.B") < 400, "{flow:?}: {}", has(b"\x1b.B"));
     let (left, right) = (Point::new(44.0, 10.0), Point::new(56.0, 10.0));
     for at in [left, right, Point::new(16.0, 16.0), Point::new(8.0, 4.0)] {
         #[expect(clippy::cast_possible_truncation, reason = "within the machine")]

@@ -1,16 +1,20 @@
-//! What hosts of lines notice where bytes come wrong: languages without checksums, a hundredth of all bytes.
+//! What hosts notice where bytes come wrong: a hundredth of all bytes, in both directions.
 //!
 //! ```text
 //! cargo test --release -p plotter-replay --features cli,live --test all hosts_on_bad_lines:: -- --include-ignored --nocapture
 //! ```
 
 use crate::driven::{Desk, machine};
-use plotter_motion::gcode::WriteOptions;
+use crate::hosts_of_hpgl::machine as coarse;
+use plotter_motion::gcode::{PenControl, WriteOptions};
+use plotter_motion::kinematics::{BeltSigns, CoreXy};
+use plotter_motion::protocol::ebb::EbbMotionSettings;
 use plotter_motion::protocol::hosts::{
-    Grbl, HostState, LineHost, LineHostSettings, MDraw, MachineHost, MachineNotice, Request,
+    EbbHost, EbbHostSettings, Grbl, HostState, Hpgl, LineHost, LineHostSettings, MDraw, MachineHost,
+    MachineNotice, Marlin, Request,
 };
 
-use plotter_motion::{PlotOp, Point, SplitMix64};
+use plotter_motion::{Machine, PlannerSettings, PlotOp, Point, SplitMix64};
 use plotter_replay::live::Spoken;
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -32,13 +36,38 @@ fn drawing(seed: u64) -> Vec<PlotOp> {
 
 fn host(spoken: Spoken, seed: u64) -> Box<dyn MachineHost> {
     let (ops, settings) = (drawing(seed).into_iter(), LineHostSettings::default());
-    if spoken == Spoken::Grbl {
-        let options = WriteOptions { settle: Duration::ZERO, ..WriteOptions::default() };
-        Box::new(LineHost::new(Grbl::new(options), settings, ops))
-    } else {
-        Box::new(LineHost::new(MDraw::new("M1 160", "M1 90"), settings, ops))
+    let options = WriteOptions { settle: Duration::ZERO, ..WriteOptions::default() };
+    match spoken {
+        Spoken::Grbl => Box::new(LineHost::new(Grbl::new(options), settings, ops)),
+        Spoken::Marlin => {
+            let pen = PenControl::Commands { up: "G4 P0\nM280 P0 S160", down: "G4 P0\nM280 P0 S90" };
+            Box::new(LineHost::new(Marlin::new(WriteOptions { pen, ..options }), settings, ops))
+        }
+        Spoken::Hpgl => Box::new(LineHost::new(Hpgl::new(), settings, ops)),
+        Spoken::Ebb { .. } => {
+            let belt = CoreXy::new(BeltSigns::TrackingEquations, 20.0).unwrap();
+            let settings = EbbHostSettings {
+                planner: PlannerSettings::of(&machine_of(spoken)),
+                motion: EbbMotionSettings {
+                    pen_settle: Duration::from_millis(100),
+                    ..EbbMotionSettings::default()
+                },
+                ..EbbHostSettings::default()
+            };
+            Box::new(EbbHost::new(belt, settings, ops).unwrap())
+        }
+        _ => Box::new(LineHost::new(MDraw::new("M1 160", "M1 90"), settings, ops)),
     }
 }
+
+/// A step of the plotter with HPGL is two of its units; the other machines have steps of their own.
+fn machine_of(spoken: Spoken) -> Machine {
+    if matches!(spoken, Spoken::Hpgl | Spoken::Ebb { .. }) { coarse() } else { machine() }
+}
+
+/// All of which it is tried.
+const SPOKEN: [Spoken; 5] =
+    [Spoken::Grbl, Spoken::MDraw, Spoken::Marlin, Spoken::Hpgl, Spoken::Ebb { is_mixed: true }];
 
 /// What became of a drawing.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
@@ -55,7 +84,7 @@ struct Ends {
 
 /// The steps with the pen down, and the place at the end.
 fn draw(spoken: Spoken, seed: u64, damaged: Option<u64>) -> (BTreeSet<(i32, i32)>, bool, Option<Point>) {
-    let mut desk = Desk::new(host(spoken, seed), &machine(), spoken, "");
+    let mut desk = Desk::new(host(spoken, seed), &machine_of(spoken), spoken, "");
     if let Some(seed) = damaged {
         let mut random = SplitMix64::new(seed);
         desk.damage =
@@ -119,18 +148,22 @@ fn ends(spoken: Spoken, seeds: std::ops::Range<u64>) -> Ends {
 
 #[test]
 fn damage_to_the_place_is_seen_at_the_next_rest() {
-    for spoken in [Spoken::Grbl, Spoken::MDraw] {
+    for spoken in SPOKEN {
         let ends = ends(spoken, 0..6);
         assert_eq!(ends.ends_elsewhere, 0, "{spoken:?}: {ends:?}");
-        assert!(ends.noticed > 0, "{spoken:?}: {ends:?}");
+        // Marlin's lines are sent again where they come wrong, EBB's where the board refuses them.
+        assert!(ends.noticed > 0 || ends.whole == 6, "{spoken:?}: {ends:?}");
     }
 }
 
 #[test]
 #[ignore = "a thousand drawings in each language, minutes: cargo test --release -p plotter-replay --features cli,live --test all hosts_on_bad_lines:: -- --ignored --nocapture"]
 fn of_a_thousand_drawings() {
-    for spoken in [Spoken::Grbl, Spoken::MDraw] {
+    for spoken in SPOKEN {
         let ends = ends(spoken, 1_000..2_000);
         assert_eq!(ends.ends_elsewhere, 0, "{spoken:?}: {ends:?}");
+        if spoken == Spoken::Marlin {
+            assert_eq!(ends.unnoticed, 0, "{spoken:?}: {ends:?}");
+        }
     }
 }

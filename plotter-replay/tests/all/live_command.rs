@@ -50,10 +50,16 @@ fn what_cannot_be_driven_is_said_in_a_line_with_status_2() {
             &["far.hpgl", "--simulate", "stepper.toml"],
             "and the machine from (0, 0) to (100, 100) mm: move or scale it",
         ),
-        (&["line.hpgl", "--simulate", "belt.toml"], "belt.toml: this machine has DC motors on one belt"),
-        (&["line.hpgl", "--simulate", "belt.toml"], "kinematics.type = \"cartesian\""),
-        (&["line.hpgl", "--port", "/dev/no-such-plotter", "--machine", "belt.toml"], "on one belt"),
-        (&["--port", "/dev/no-such-plotter", "--machine", "belt.toml"], "on one belt"),
+        (
+            &["line.hpgl", "--simulate", "belt.toml", "--link", "frames"],
+            "a machine with one belt has digits only",
+        ),
+        (
+            &["line.hpgl", "--port", "/dev/no-such-plotter", "--machine", "belt.toml"],
+            "there is no such serial port",
+        ),
+        (&["line.hpgl", "--pen", "red"], "expected a number, `=` and a name"),
+        (&["line.hpgl", "--pen", "0=red"], "1 to 255"),
         (&["line.hpgl", "--port", "/dev/no-such-plotter"], "there is no such serial port"),
         (&["line.hpgl", "-o", "no/such/folder.plog"], "no/such/folder.plog: the log cannot be written"),
         (&["line.hpgl", "--http-port", &taken], "used by another program"),
@@ -110,6 +116,28 @@ fn a_drawing_in_any_language_is_drawn_and_recorded() {
         run(&["live", "far.hpgl", "--simulate", "machine.toml", "--speed", "4", "--start"], here);
     assert_eq!(status, Some(1));
     assert!(out.contains("far.hpgl: 1 errors, left out") && out.contains("lies outside"), "{out}");
+}
+
+/// The marking board, where this crate stands beside its machines.
+const BOARD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/machines/marking-board.toml");
+
+#[test]
+fn a_board_with_one_belt_draws_from_where_its_pen_is_and_its_log_is_run_again() {
+    if !Path::new(BOARD).exists() {
+        println!("{BOARD} is not here: left out");
+        return;
+    }
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    std::fs::write(here.join("a.hpgl"), "IN;SP1;PU6400,4400;PD6800,4400,6800,4800;").unwrap();
+    let arguments = ["live", "a.hpgl", "--simulate", BOARD, "--speed", "20", "--start", "-o", "belt.plog"];
+    let (status, out, err) = run(&arguments, here);
+    assert_eq!((status, err.as_str()), (Some(0), ""), "{out}");
+    assert!(out.contains("targets: 3 of 3 reached"), "{out}");
+    let (_, out, _) = run(&["info", "belt.plog"], here);
+    assert!(out.contains("targets: 3 sent, 3 reached") && out.contains("nothing lost"), "{out}");
+    let (status, out, err) = run(&["check", "belt.plog", "--machine", BOARD], here);
+    assert_eq!(status, Some(0), "{out}{err}");
 }
 
 /// A program that ends with the test.

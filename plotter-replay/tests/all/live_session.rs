@@ -1,34 +1,22 @@
 //! A drawing sent to a simulated machine, without a browser: the stop, the server's door, what goes wrong.
 
 use plotter_motion::protocol::frame::{Decoder, Kind};
-use plotter_motion::{
-    Machine, MachineConfig, Pen, PenMove, StepPoint, config::SerialConfig, toolpath::from_mm,
-};
+use plotter_motion::{Pen, PenMove, StepPoint, toolpath::from_mm};
 use plotter_replay::live::{
-    Command, Line, LinkChoice, LivePage, MachineLine, MachineLog, Plan, Recording, Server, ServerError,
+    Command, DrawingStep, Line, LinkChoice, LivePage, MachineLog, Plan, Recording, Server, ServerError,
     Session, SessionSettings, SimulatedMachine, State, Telemetry,
 };
 use plotter_replay::log::{Event, Header, LogFile, Reader, Writer, create, open};
 use plotter_replay::serial::{PortError, PortErrorKind};
 use plotter_replay::{AnyController, PlotterSettings, VirtualPlotter, golden};
-use std::fmt;
 use std::io::{Read, Write};
 use std::net::TcpStream;
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-/// As fast as it goes: nothing here goes by the clock on the wall.
-const AS_FAST_AS_IT_GOES: f64 = 1e6;
-/// Longer than any session here takes on a computer that is busy with other things; only what never ends is
-/// ended by it.
-const FOR_EVER: Duration = Duration::from_secs(600);
-
-/// The gantry with a host that does not pause between bytes.
-fn machine() -> Machine {
-    let config = MachineConfig::default();
-    Machine::new(MachineConfig { serial: SerialConfig { byte_gap_ms: 0.0, ..config.serial }, ..config })
-        .unwrap()
-}
+use crate::watched::{
+    AS_FAST_AS_IT_GOES, FOR_EVER, Step, ask_for, during, machine, until_it_is, until_it_moves, watched,
+};
 
 /// A square of 30 mm.
 fn square() -> Vec<PenMove> {
@@ -39,92 +27,6 @@ fn square() -> Vec<PenMove> {
 fn settings(targets: u64) -> SessionSettings {
     let plan = Some(Plan { targets, way_mm: 120.0 });
     SessionSettings { byte_gap: Duration::ZERO, plan, ..SessionSettings::default() }
-}
-
-/// Something that is done at a look, or looked for; true once it is over.
-type Step = Box<dyn FnMut(&Session, Telemetry) -> bool + Send>;
-
-/// A line whose machine is looked at whenever the session has listened to it: in the machine's time.
-struct Watched<W: Write> {
-    line: MachineLine<W>,
-    session: OnceLock<Session>,
-    /// What is still to be done, the next at the end.
-    steps: Mutex<Vec<Step>>,
-}
-
-impl<W: Write> fmt::Debug for Watched<W> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Watched")
-    }
-}
-
-impl<W: Write + Send> Line for Watched<W> {
-    fn send(&self, bytes: &[u8]) -> Result<(), PortError> {
-        self.line.send(bytes)
-    }
-
-    fn receive(&self, bytes: &mut [u8], wait: Duration) -> Result<usize, PortError> {
-        let count = self.line.receive(bytes, wait)?;
-        let now = *self.line.telemetry().lock().unwrap();
-        let mut steps = self.steps.lock().unwrap();
-        while steps.last_mut().is_some_and(|step| step(self.session.wait(), now)) {
-            steps.pop();
-        }
-        Ok(count)
-    }
-
-    fn now(&self) -> Option<Duration> {
-        self.line.now()
-    }
-}
-
-/// A session that is over; `steps` were done in their order while it went on.
-fn watched<W: Write + Send + 'static, R: Write + Send + 'static>(
-    line: MachineLine<W>,
-    moves: Vec<PenMove>,
-    recording: Option<Recording<R>>,
-    settings: SessionSettings,
-    mut steps: Vec<Step>,
-) -> Session {
-    steps.reverse();
-    let telemetry = Some(line.telemetry());
-    let line = Arc::new(Watched { line, session: OnceLock::new(), steps: Mutex::new(steps) });
-    let session = Session::open(
-        Arc::clone(&line) as _,
-        Some(Box::new(moves.into_iter())),
-        recording,
-        telemetry,
-        settings,
-    );
-    assert_eq!(session.state(), State::Ready);
-    line.session.set(session.clone()).unwrap();
-    assert_eq!(session.wait(FOR_EVER), State::Done);
-    assert!(line.steps.lock().unwrap().is_empty(), "the session was over before all was done");
-    session
-}
-
-fn ask_for(command: Command) -> Step {
-    Box::new(move |session, _| {
-        session.command(command);
-        true
-    })
-}
-
-fn until_it_moves() -> Step {
-    Box::new(|_, now| now.duty != [0, 0])
-}
-
-fn until_it_is(state: State) -> Step {
-    Box::new(move |session, _| session.state() == state)
-}
-
-/// So long in the machine's time; each time of it `check` is asked.
-fn during(time: Duration, mut check: impl FnMut(&Session, Telemetry) + Send + 'static) -> Step {
-    let mut until = None;
-    Box::new(move |session, now| {
-        check(session, now);
-        now.time >= *until.get_or_insert(now.time + time)
-    })
 }
 
 #[test]
@@ -217,7 +119,7 @@ impl Line for Cut {
 
 #[test]
 fn a_machine_that_goes_away_fails_the_session() {
-    let moves = Some(Box::new(square().into_iter()) as _);
+    let moves = Some(Box::new(square().into_iter().map(DrawingStep::from)) as _);
     let session = Session::open(Arc::new(Cut), moves, None::<Recording<LogFile>>, None, settings(4));
     let State::Failed(why) = session.wait(FOR_EVER) else { panic!("{:?}", session.state()) };
     assert!(why.contains("gone away"), "{why}");

@@ -37,9 +37,15 @@ mod line;
 mod lines_in_logs;
 mod linked_session;
 #[cfg(all(feature = "cli", feature = "live"))]
+mod live_bad;
+#[cfg(all(feature = "cli", feature = "live"))]
 mod live_command;
+#[cfg(feature = "live")]
+mod live_hand;
 #[cfg(all(feature = "cli", feature = "live"))]
 mod live_lines;
+#[cfg(feature = "live")]
+mod live_many;
 #[cfg(feature = "live")]
 mod live_session;
 mod log_commands;
@@ -62,3 +68,5 @@ mod simulated_dialects;
 #[cfg(feature = "live")]
 mod simulated_ebb;
 mod virtual_plotter;
+#[cfg(feature = "live")]
+mod watched;

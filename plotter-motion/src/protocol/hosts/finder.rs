@@ -70,13 +70,34 @@ pub struct Finder {
     /// Until when it waits, and what it asks then.
     until: Duration,
     asks: usize,
+    /// How many questions there are.
+    last: usize,
 }
 
 impl Finder {
     /// One that begins to listen now, when the port is open.
     #[must_use]
     pub fn new(now: Duration) -> Self {
-        Self { heard: Words::default(), until: now.saturating_add(GREETING), asks: 0 }
+        Self { heard: Words::default(), until: now.saturating_add(GREETING), asks: 0, last: QUESTIONS.len() }
+    }
+
+    /// One that asks at once, of a machine whose greeting has passed: at another baud rate.
+    #[must_use]
+    pub fn asking(now: Duration) -> Self {
+        Self { until: now, ..Self::new(now) }
+    }
+
+    /// One that asks at once, in one language.
+    #[must_use]
+    pub fn only(now: Duration, tongue: Tongue) -> Self {
+        let (asks, last) = match tongue {
+            Tongue::Grbl => (0, 1),
+            Tongue::Marlin => (1, 2),
+            Tongue::MDraw => (2, 3),
+            Tongue::Ebb => (3, 4),
+            Tongue::Hpgl => (4, 5),
+        };
+        Self { asks, last, ..Self::asking(now) }
     }
 
     /// Takes a byte of the machine; more than a thousand are not looked at.
@@ -92,7 +113,8 @@ impl Finder {
         if now < self.until {
             return Finding::Until(self.until);
         }
-        let Some(question) = QUESTIONS.get(self.asks) else { return Finding::Nothing };
+        let asked = QUESTIONS.get(self.asks).filter(|_| self.asks < self.last);
+        let Some(question) = asked else { return Finding::Nothing };
         self.asks += 1;
         self.until = now.saturating_add(ANSWER);
         Finding::Send(question)
@@ -174,5 +196,18 @@ mod tests {
         assert_eq!(find(grbl, b""), (Finding::Found(Tongue::Grbl), 1));
         assert_eq!(find(|_| b"", b""), (Finding::Nothing, QUESTIONS.iter().map(|asked| asked.len()).sum()));
         assert_eq!(find(|_| b"what?\r\n", b"").0, Finding::Nothing);
+    }
+
+    #[test]
+    fn one_language_only_is_asked_at_once() {
+        let now = Duration::from_secs(3);
+        let mut finder = Finder::only(now, Tongue::Hpgl);
+        assert_eq!(finder.poll(now), Finding::Send(b"\x1b.(;OI;"));
+        let mut silent = finder.clone();
+        b"7470A\r".iter().for_each(|&byte| finder.receive(byte));
+        assert_eq!(finder.poll(now), Finding::Found(Tongue::Hpgl));
+        assert_eq!(silent.poll(now + ANSWER), Finding::Nothing);
+        let mut asking = Finder::asking(now);
+        assert_eq!(asking.poll(now), Finding::Send(b"?"));
     }
 }

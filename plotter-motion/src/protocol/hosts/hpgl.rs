@@ -22,6 +22,27 @@ const MOST_UNITS: f64 = 32_767.0;
 /// Speeds that a plotter of that age takes, cm/s.
 const SPEEDS: (f64, f64) = (1.0, 38.0);
 
+/// How a plotter says that it has no room.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum HpglFlow {
+    /// It is asked for its free bytes behind each line (`ESC .B`). A lost answer is asked for again, and it
+    /// needs nothing of the cable but the two lines for bytes.
+    #[default]
+    Asked,
+    /// It sends XOFF when fewer than 128 bytes are free, and XON when there is room again (`ESC .I`, `ESC .N`).
+    /// Lines go out without a pause between them. Half of the least buffer: an adapter on USB keeps up to 16
+    /// ms of what both sides say, 31 bytes at 9600 bits a second, and sends on what it has.
+    XonXoff,
+    /// Its line DTR says so, which the cable leads to the CTS of this computer, and whose driver waits for
+    /// it: the port is opened so. What stops the plotter waits, too.
+    Dtr,
+}
+
+/// XON and XOFF, the control characters DC1 and DC3 of ASCII.
+const XON: u8 = 0x11;
+const XOFF: u8 = 0x13;
+
 /// HPGL for a plotter with device control, as Hewlett-Packard's 7470A to 7595A have it.
 ///
 /// - Behind each line the plotter is asked how many bytes of its buffer are free (`ESC .B`), and the next
@@ -57,6 +78,9 @@ pub struct Hpgl {
     begins: bool,
     /// The place that comes next was asked for at rest.
     rests: bool,
+    flow: HpglFlow,
+    /// It has sent XOFF.
+    is_held: bool,
 }
 
 impl Default for Hpgl {
@@ -69,13 +93,24 @@ impl Hpgl {
     /// A plotter that draws with its first pen until the drawing selects one.
     #[must_use]
     pub const fn new() -> Self {
-        Self { pen: 1, speed_cm_s: None, begins: true, rests: false }
+        Self { pen: 1, speed_cm_s: None, begins: true, rests: false, flow: HpglFlow::Asked, is_held: false }
+    }
+
+    /// The same, which says so that it has no room.
+    #[must_use]
+    pub const fn with_flow(self, flow: HpglFlow) -> Self {
+        Self { flow, ..self }
     }
 
     /// Sets the plotter up, if that is due.
     fn lead(&mut self, out: &mut OpText) -> core::fmt::Result {
         if core::mem::take(&mut self.begins) {
-            write!(out, "\x1b.@;0:\x1b.M;;;10:\nIN;SP{};\n", self.pen)?;
+            match self.flow {
+                HpglFlow::Asked => write!(out, "\x1b.@;0:\x1b.M;;;10:\n")?,
+                HpglFlow::XonXoff => write!(out, "\x1b.@;0:\x1b.I128;;17:\x1b.N;19:\x1b.M;;;10:\n")?,
+                HpglFlow::Dtr => write!(out, "\x1b.@;1:\x1b.M;;;10:\n")?,
+            }
+            writeln!(out, "IN;SP{};", self.pen)?;
         }
         Ok(())
     }
@@ -139,6 +174,7 @@ impl Language for Hpgl {
 
     fn begin(&mut self) {
         (self.begins, self.rests, self.speed_cm_s) = (true, false, None);
+        self.is_held = false;
     }
 
     fn unsaid(&mut self) {
@@ -174,11 +210,34 @@ impl Language for Hpgl {
     }
 
     fn frame(&self, _: u64, line: &[u8], out: &mut Words<MOST_LINE>) -> bool {
-        line.trim_ascii_end().iter().chain(Self::ROOM_QUERY).all(|&byte| out.push(byte))
+        let query = if self.answers_lines() { Self::ROOM_QUERY } else { b"" };
+        line.trim_ascii_end().iter().chain(query).all(|&byte| out.push(byte))
     }
 
     fn fits(&self, flight: InFlight, _: usize) -> bool {
         flight.lines == 0
+    }
+
+    fn hear_byte(&mut self, byte: u8) -> bool {
+        match (self.flow, byte) {
+            (HpglFlow::XonXoff, XON) => self.is_held = false,
+            (HpglFlow::XonXoff, XOFF) => self.is_held = true,
+            _ => return false,
+        }
+        true
+    }
+
+    fn is_held(&self) -> bool {
+        self.is_held
+    }
+
+    fn may_be_silent(&self) -> bool {
+        // A question waits with the rest.
+        self.is_held || self.flow == HpglFlow::Dtr
+    }
+
+    fn answers_lines(&self) -> bool {
+        self.flow == HpglFlow::Asked
     }
 
     fn hear(&mut self, line: &[u8]) -> Answer {

@@ -178,6 +178,26 @@ pub trait Language {
     /// Whether a line of so many bytes may go out while others are.
     fn fits(&self, flight: InFlight, bytes: usize) -> bool;
 
+    /// Takes a byte of the machine that is no part of a line; says whether it is one.
+    fn hear_byte(&mut self, _byte: u8) -> bool {
+        false
+    }
+
+    /// Whether the machine lets no byte through now.
+    fn is_held(&self) -> bool {
+        false
+    }
+
+    /// Whether a machine that works may say nothing for any time.
+    fn may_be_silent(&self) -> bool {
+        false
+    }
+
+    /// Whether lines are answered, or what a question asks for; else a line that is out is taken.
+    fn answers_lines(&self) -> bool {
+        true
+    }
+
     /// What a line of the machine means, without its end.
     fn hear(&mut self, line: &[u8]) -> Answer;
 

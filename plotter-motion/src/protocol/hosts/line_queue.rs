@@ -109,6 +109,11 @@ impl LineQueue {
         InFlight { lines: self.sent, bytes: lines.map(|line| line.count).sum() }
     }
 
+    /// Whether the last line that went out is whole.
+    pub(super) const fn is_between(&self) -> bool {
+        self.bytes_sent == 0
+    }
+
     /// Bytes of the next line, what it is for, and whether it is begun; `None` if all are out.
     pub(super) fn next(&self) -> Option<(usize, Purpose, bool)> {
         let line = self.lines.get(self.kept + self.sent)?;

@@ -11,7 +11,7 @@
 //! |---|---|---|---|---|
 //! | [`Grbl`] | GRBL 1.1, GRBLHAL, `FluidNC` | bytes of its buffer | `?` | `0x18` |
 //! | [`Marlin`] | Marlin 2 | a line at a time, with number and checksum | `M114` at rest | `M112` |
-//! | [`Hpgl`] | pen plotters with HPGL on a serial line | free bytes of its buffer, `ESC .B` | `OA` at rest | none: `ESC .K` drops what is buffered |
+//! | [`Hpgl`] | pen plotters with HPGL on a serial line | free bytes of its buffer, `ESC .B`, or XON and XOFF, or DTR | `OA` at rest | none: `ESC .K` drops what is buffered |
 //! | [`EbbHost`] | AxiDraw, EggBot | a command at a time | `QS` | `ES` |
 //! | [`MDraw`] | Makeblock's XY plotter | a line at a time | `P` | none |
 //!
@@ -37,7 +37,7 @@ mod words;
 pub use ebb::{EbbHost, EbbHostSettings};
 pub use finder::{Finder, Finding, Tongue};
 pub use grbl::Grbl;
-pub use hpgl::Hpgl;
+pub use hpgl::{Hpgl, HpglFlow};
 pub use language::{Answer, Doing, Language, OpText, Report};
 pub use line_host::{LineHost, LineHostSettings};
 pub use line_queue::{InFlight, MOST_LINE, Purpose};

@@ -82,7 +82,8 @@ impl Handshake {
 ///   whether it is empty (8) and whether the machine was stopped at its own controls (16).
 /// - `ESC .I` and `ESC .N` choose the characters and the threshold of XON and XOFF, `ESC .M` those of
 ///   answers, `ESC .R` the usual ones. `ESC .K` drops what is buffered; what the plotter has planned is still
-///   drawn. The line DTR is not there, so that `ESC .@` changes nothing, nor is the handshake by enquiry.
+///   drawn. `ESC .@` lets the line DTR go down below the threshold of XOFF; its buffer has one size. The
+///   handshake by enquiry is not there.
 /// - A pen change takes 1 s, during which the machine stands. Lines are cut at the area.
 /// - A limit switch or the button stops the machine until it is reset.
 ///
@@ -97,6 +98,9 @@ pub(crate) struct Hpgl {
     handshake: Handshake,
     /// XOFF has been sent.
     host_waits: bool,
+    /// The line DTR goes down when the buffer is nearly full (`ESC .@`), and is down.
+    drives_dtr: bool,
+    dtr_is_down: bool,
     buffer: VecDeque<u8>,
     /// The error of the interface.
     error: u8,
@@ -134,6 +138,8 @@ impl Hpgl {
             control: DeviceControl::default(),
             handshake: Handshake::default(),
             host_waits: false,
+            drives_dtr: false,
+            dtr_is_down: false,
             buffer: VecDeque::new(),
             error: 0,
             wants_size: false,
@@ -169,6 +175,7 @@ impl Hpgl {
         self.followed = Followed::new(&self.options);
         (self.control, self.handshake) = (DeviceControl::default(), Handshake::default());
         (self.host_waits, self.error, self.wants_size) = (false, 0, false);
+        (self.drives_dtr, self.dtr_is_down) = (false, false);
         (self.lowered, self.stopped) = (false, false);
         self.sent = self.inner.position_mm();
         self.commanded = self.sent;
@@ -203,6 +210,13 @@ impl Hpgl {
             self.host_waits = true;
             self.out.extend(&self.handshake.xoff);
         }
+        self.dtr_is_down |= self.drives_dtr && self.free() < self.handshake.threshold;
+    }
+
+    /// Whether its line DTR lets bytes through.
+    #[cfg(feature = "live")]
+    pub(crate) const fn lets_bytes_through(&self) -> bool {
+        !self.dtr_is_down
     }
 
     /// Lets the host go on, if there is room again.
@@ -212,6 +226,7 @@ impl Hpgl {
             self.host_waits = false;
             self.out.extend(&self.handshake.xon);
         }
+        self.dtr_is_down &= self.free() < room && !self.buffer.is_empty();
     }
 
     fn instruct(&mut self, letter: u8, numbers: &[Option<u32>]) {
@@ -236,6 +251,10 @@ impl Hpgl {
                 (self.handshake, self.host_waits) = (Handshake::default(), false);
             }
             b'H' | b'I' | b'M' | b'N' => self.configure(letter, numbers),
+            b'@' => {
+                self.drives_dtr = numbers.get(1).copied().flatten().is_some_and(|bits| bits & 1 == 1);
+                self.dtr_is_down &= self.drives_dtr;
+            }
             _ => {}
         }
     }

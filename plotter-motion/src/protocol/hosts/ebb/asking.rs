@@ -1,7 +1,7 @@
 //! What a person asks of the host of an EBB.
 
 use super::super::{NotNow, Request};
-use super::{EbbHost, Phase, Purpose, Then};
+use super::{EbbHost, HandWay, Phase, Purpose, Then};
 use crate::kinematics::Kinematics;
 use crate::protocol::ebb::EbbCommand;
 use crate::{Pen, PlotOp, Point, StepPoint};
@@ -12,31 +12,45 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
         self.phase = Phase::Ending(Then::Pause);
     }
 
-    /// A straight move by hand at constant speed.
+    /// A straight move by hand, which goes on with one that is under way in the same direction.
     pub(super) fn move_by_hand(&mut self, to: Point, speed_mm_s: f64) -> Result<(), NotNow> {
         if !(to.x.abs() <= 1e4 && to.y.abs() <= 1e4) {
             return Err(NotNow::OutOfRange);
         }
+        let steps = self.motion.kinematics().steps_at(to);
+        if let Some(mut way) = self.way {
+            let by_mm = self.point(way.to()).distance(to);
+            if by_mm > self.longest_ahead(speed_mm_s) || !way.lengthen(steps, by_mm) {
+                return Err(NotNow::Busy);
+            }
+            self.way = Some(way);
+            return Ok(());
+        }
         if self.line.is_some() || self.goes_to.is_some() {
             return Err(NotNow::Busy);
         }
-        let from = self.by_hand;
-        let to_steps = self.motion.kinematics().steps_at(to);
-        let way = [to_steps.x.saturating_sub(from.x), to_steps.y.saturating_sub(from.y)];
-        let ms = libm::ceil(1e3 * self.point(from).distance(to) / speed_mm_s.clamp(0.1, 1e3));
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast saturates")]
-        let duration_ms = (ms as u32).clamp(10, 1_000_000);
-        self.send_command(Purpose::ByHand, EbbCommand::Constant { duration_ms, steps: way });
-        self.by_hand = to_steps;
+        let length_mm = self.point(self.by_hand).distance(to);
+        let speed_mm_s = speed_mm_s.clamp(0.1, 1e3);
+        let accel_mm_s2 = self.settings.planner.accel_mm_s2;
+        self.way = Some(HandWay::new(self.by_hand, steps, length_mm, speed_mm_s, accel_mm_s2));
+        self.write_by_hand();
         Ok(())
     }
 
-    /// Speed by hand: the motors start and stop at once.
+    /// A key that is held asks for a tenth of a second at a time; what is more is a movement of its own.
+    fn longest_ahead(&self, speed_mm_s: f64) -> f64 {
+        0.5 * speed_mm_s
+    }
+
+    /// Speed by hand, for an eye beside the machine.
     pub(super) fn hand_mm_s(&self) -> f64 {
         (0.1 * self.settings.planner.travel_speed_mm_s).min(20.0)
     }
 
     pub(super) fn go_on(&mut self, left: Option<u32>) -> Result<(), NotNow> {
+        if self.way.is_some() && self.is_free().is_ok() {
+            return Err(NotNow::Busy);
+        }
         match self.phase {
             Phase::Ready | Phase::PenWanted(_) | Phase::SheetWanted => {}
             Phase::Paused => {
@@ -85,7 +99,7 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
                 _ => Err(NotNow::Nothing),
             },
             Request::Stop => {
-                (self.line, self.next, self.goes_to) = (None, None, None);
+                (self.line, self.next, self.goes_to, self.way) = (None, None, None, None);
                 if !matches!(self.phase, Phase::Unheard(_)) {
                     self.phase = Phase::Stopped;
                 }
@@ -100,6 +114,9 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
             },
             Request::ByHand(op) => {
                 self.is_free()?;
+                if self.way.is_some() {
+                    return Err(NotNow::Busy);
+                }
                 let speed = self.hand_mm_s();
                 match op {
                     PlotOp::Travel { to } if self.pen == Pen::Up => self.move_by_hand(to, speed),
@@ -125,11 +142,15 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
                 if !(by.length() <= 1e4 && feed_mm_s > 0.0) {
                     return Err(NotNow::OutOfRange);
                 }
-                let to = self.point(self.by_hand) + by;
+                let from = self.way.map_or(self.by_hand, |way| way.to());
+                let to = self.point(from) + by;
                 self.move_by_hand(to, feed_mm_s.min(2.0 * self.hand_mm_s()))
             }
             Request::StandsAt(place) => {
                 self.is_free()?;
+                if self.way.is_some() || self.goes_to.is_some() {
+                    return Err(NotNow::Busy);
+                }
                 if !(place.x.abs() <= 1e4 && place.y.abs() <= 1e4) {
                     return Err(NotNow::OutOfRange);
                 }
@@ -153,7 +174,7 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
             }
             Request::PenDownAt(position) => {
                 self.is_free()?;
-                if self.line.is_some() || self.goes_to.is_some() {
+                if self.line.is_some() || self.goes_to.is_some() || self.way.is_some() {
                     return Err(NotNow::Busy);
                 }
                 let [_, down] = &mut self.settings.servo;

@@ -2,10 +2,12 @@
 
 mod answer;
 mod asking;
+mod hand_way;
 mod hearing;
 mod sending;
 
 use self::answer::Said;
+use self::hand_way::HandWay;
 use super::ring::Ring;
 use super::trail::Trail;
 use super::{HostState, HostStatus, MachineHost, MachineLimits, MachineNotice, NotNow, Request, Words};
@@ -133,8 +135,8 @@ enum Then {
 ///   line did that came wrong is told ([`MachineNotice::Elsewhere`]), counted and taken back.
 /// - A line that the board refuses is sent again. After [`EbbHostSettings::silence`] an answer counts as
 ///   lost.
-/// - By hand the machine moves at a tenth of the travel speed, 20 mm/s at most: at constant speed, as SM
-///   does.
+/// - By hand the machine moves at a tenth of the travel speed, 20 mm/s at most, with ramps: in pieces of SM,
+///   each at constant speed.
 ///
 /// ```
 /// # use plotter_motion::kinematics::{BeltSigns, CoreXy};
@@ -195,6 +197,8 @@ pub struct EbbHost<K, I> {
     by_hand: StepPoint,
     /// Where they go by hand once the pen is as it is to be.
     goes_to: Option<Point>,
+    /// The way by hand that is under way.
+    way: Option<HandWay>,
     /// What the board answered to the last QS.
     place: Option<StepPoint>,
     holder: Option<u8>,
@@ -237,6 +241,7 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
             held: None,
             by_hand: StepPoint::default(),
             goes_to: None,
+            way: None,
             place: None,
             holder: None,
             sent_ops: 0,

@@ -9,7 +9,7 @@ use crate::{Pen, PlotOp, StepPoint};
 impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
     /// The next line, if there is one for now.
     pub(super) fn write(&mut self) {
-        if self.line.is_some() {
+        if self.line.is_some() || self.write_by_hand() {
             return;
         }
         match self.phase {
@@ -23,6 +23,18 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
             }
             Phase::Stopped => {}
         }
+    }
+
+    /// The next piece of a way by hand; says whether there is one.
+    pub(super) fn write_by_hand(&mut self) -> bool {
+        let Some(way) = &mut self.way else { return false };
+        let ((duration_ms, steps, at), is_last) = way.next();
+        if is_last {
+            self.way = None;
+        }
+        self.by_hand = at;
+        self.send_command(Purpose::ByHand, EbbCommand::Constant { duration_ms, steps });
+        true
     }
 
     pub(super) fn write_setting(&mut self, sent: u8) {

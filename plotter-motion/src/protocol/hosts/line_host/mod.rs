@@ -280,7 +280,8 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
 
     /// Whether a silence leads to something.
     fn is_watched(&self) -> bool {
-        self.waits() && (!self.is_silent || L::IS_NUMBERED)
+        let may_be_silent = self.phase != Phase::Unheard && self.language.may_be_silent();
+        self.waits() && !may_be_silent && (!self.is_silent || L::IS_NUMBERED)
     }
 
     fn patience(&self) -> Duration {
@@ -338,7 +339,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
         if matches!(self.phase, Phase::Braking | Phase::Forgetting) {
             return None;
         }
-        if self.hears_until.is_some_and(|until| now < until) {
+        if self.hears_until.is_some_and(|until| now < until) || self.language.is_held() {
             return None;
         }
         self.hears_until = None;
@@ -354,10 +355,21 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
         if L::QUERY.is_none() && self.queue.in_flight().lines == 0 && !is_begun {
             self.spoke = Some(now);
         }
-        self.queue.next_byte()
+        let byte = self.queue.next_byte();
+        if !self.language.answers_lines() && self.queue.is_between() {
+            // Nobody answers it. (A question is no sign that anybody hears.)
+            if let Some(purpose) = self.queue.answer().filter(|&purpose| purpose != Purpose::Question) {
+                self.taken(purpose, None);
+            }
+        }
+        byte
     }
 
     fn receive(&mut self, now: Duration, byte: u8) {
+        if self.language.hear_byte(byte) {
+            (self.heard, self.has_tried) = (Some(now), false);
+            return;
+        }
         match byte {
             b'\n' => self.line(now),
             b'\r' => {}

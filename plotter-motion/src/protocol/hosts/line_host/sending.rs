@@ -208,7 +208,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
     /// place at rest is told.
     pub(super) fn ask_for_room(&mut self, now: Duration) {
         let waits = self.queue.in_flight().lines > 0 || self.lacks_report();
-        if L::ROOM_QUERY.is_empty() || !waits {
+        if L::ROOM_QUERY.is_empty() || !waits || !(self.language.answers_lines() || self.lacks_report()) {
             (self.room_asked, self.rest_questions) = (None, 0);
             return;
         }
@@ -217,7 +217,9 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             return;
         }
         self.room_asked = Some(now);
-        L::ROOM_QUERY.iter().for_each(|&byte| self.urgent(byte));
+        if !self.language.may_be_silent() {
+            L::ROOM_QUERY.iter().for_each(|&byte| self.urgent(byte));
+        }
         self.rest_questions = if self.lacks_report() { self.rest_questions.saturating_add(1) } else { 0 };
         if self.rest_questions >= QUESTIONS_FOR_REST {
             self.rest_questions = 0;

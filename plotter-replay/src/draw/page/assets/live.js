@@ -53,7 +53,7 @@ sheet.box = data.box;
 const curve = (role, label, run) => ({ role, label, run, points: [] });
 const charts = ["X", "Y"].map((name) => new Chart($("charts"), name, "mm", [curve("target", "target", "steps"), curve("desired", "on the line"), curve("actual", "actual")]));
 const error = new Chart($("charts"), "contour error", "mm", [curve("error", "distance from the line")]);
-if (!data.hand) charts.push(error); else error.canvas.closest("section")?.remove();
+if (!data.lines) charts.push(error); else error.canvas.closest("section")?.remove();
 
 const fixed = (value, digits, unit) => value === null || value === undefined ? "–" : value.toFixed(digits) + " " + unit;
 const clock = (s) => {
@@ -62,12 +62,13 @@ const clock = (s) => {
   if (whole < 60) return whole + " s";
   return whole < 3600 ? Math.floor(whole / 60) + " min " + two(whole % 60) + " s" : Math.floor(whole / 3600) + " h " + two(Math.floor(whole / 60) % 60) + " min";
 };
-const duty = (share) => share === undefined ? "not told by this machine" : (share * 100).toFixed(1) + " %";
+const duty = (share, motor) => share === undefined ? "not told by this machine"
+  : (share * 100).toFixed(1) + " %" + (data.supply_v ? ", " + (share * data.supply_v[motor]).toFixed(1) + " V" : "");
 const BANNERS = {
   connecting: ["", "Waiting for the machine to answer."], locked: ["bad", ""], homing: ["", "Searching for the limit switches."],
-  ready: ["", "Ready: press Start to draw."], watching: ["", "Watching: there is no drawing to send."], running: ["good", "Drawing."],
-  paused: ["", data.hand ? "Paused, the pen is lifted: Resume puts it back where it was." : "Paused: the target under way is finished, no further one is sent."],
-  stopped: ["bad", data.hand ? "EMERGENCY STOP. Resume unlocks the machine and lifts the pen." : "EMERGENCY STOP. Resume lets the motors go on."], done: ["good", "Finished."], failed: ["bad", ""],
+  ready: ["", "Ready: press Start to draw."], watching: ["", data.hand ? "No drawing: the machine is led by hand." : "Watching: there is no drawing to send."], running: ["good", "Drawing."],
+  paused: ["", data.lines ? "Paused, the pen is lifted: Resume puts it back where it was." : "Paused: the target under way is finished, then the pen is up; Resume puts it back where it was."],
+  stopped: ["bad", data.lines ? "EMERGENCY STOP. Resume unlocks the machine and lifts the pen." : "EMERGENCY STOP. Resume lets the motors go on."], done: ["good", "Finished."], failed: ["bad", ""],
 };
 
 function banner(kind, text) {
@@ -83,6 +84,7 @@ function take(update) {
     way.x.push(update.way[n] * 1e-3); way.y.push(update.way[n + 1] * 1e-3); way.s.push(update.way[n + 2]);
   }
   way.length = way.x.length;
+  if (data.hand && !data.lines) sheet.box = reach();
   latest = update.last && [update.last[0] * 1e-3, update.last[1] * 1e-3, update.last[2]];
   for (const [time, at, line, target] of update.samples) {
     [0, 1].forEach((axis) => {
@@ -103,6 +105,8 @@ function take(update) {
   const wants = update.wants && !["stopped", "running"].includes(update.state) ? update.wants : "";
   const wanted = wants.match(/^pen (\d+) is wanted/);
   $("banner").style.borderLeft = wanted ? "16px solid " + colour(wanted[1] < 2 ? "ink" : "pen" + ((wanted[1] - 2) % 7 + 1)) : "";
+  const given = wanted && data.pens[wanted[1]], named = given && (given.match(/#[0-9a-f]{6}/i) || [given])[0];
+  if (named && CSS.supports("color", named)) $("banner").style.borderLeftColor = named;
   banner(kind, update.state === "failed" ? update.failure + " The recording up to here is kept." : wants ? wants[0].toUpperCase() + wants.slice(1) + "." : text);
   document.body.dataset.state = update.state;
   $("start").disabled = update.state !== "ready";
@@ -111,16 +115,17 @@ function take(update) {
     const free = ["ready", "watching", "paused"].includes(update.state), held = update.state === "locked" || update.state === "stopped";
     for (const each of $("hand").querySelectorAll("button")) each.disabled = !free;
     for (const name of ["home", "unlock"]) $("hand").querySelector("[data-ask=" + name + "]").disabled = name === "home" ? !(free || held) : !held;
+    if (update.by_hand) banner("", "By hand: " + update.by_hand[0] + " of " + update.by_hand[1] + " done.");
     $("hand").querySelector("[data-ask=next]").disabled = !(free && update.targets !== null);
     $("order").parentNode.parentNode.hidden = !isPreview();
-    if (document.activeElement !== $("feed")) { $("feed").value = update.feed_percent; $("feed-said").textContent = update.feed_percent + " %"; }
+    if (data.lines && document.activeElement !== $("feed")) { $("feed").value = update.feed_percent; $("feed-said").textContent = update.feed_percent + " %"; }
   }
   $("resume").disabled = update.state !== "paused" && update.state !== "stopped";
   $("stop").disabled = update.state === "done" || update.state === "failed";
   $("progress").value = update.targets ? update.sent / update.targets : 0;
   fill($("done"), [
-    [data.hand ? "operations done" : "targets done", update.targets === null ? String(update.sent) : update.sent + " of " + update.targets],
-    ...(data.hand ? [] : [["reached", String(update.reached)]]),
+    [data.lines ? "operations done" : "targets done", update.targets === null ? String(update.sent) : update.sent + " of " + update.targets],
+    ...(data.lines ? [] : [["reached", String(update.reached)]]),
     ["remaining", update.state === "done" ? "–" : clock(update.remaining_s ?? (isPreview() ? data.takes_s : null))],
     ["recording", update.recording],
   ]);
@@ -131,7 +136,7 @@ function take(update) {
     ["position x", fixed(update.at[0], 3, "mm")], ["position y", fixed(update.at[1], 3, "mm")],
     ["next x", fixed(next[0], 3, "mm")], ["next y", fixed(next[1], 3, "mm")],
     ["speed x", fixed(update.speed_mm_s[0], 1, "mm/s")], ["speed y", fixed(update.speed_mm_s[1], 1, "mm/s")],
-    ...(data.hand ? [] : [["duty x", duty(shares[0])], ["duty y", duty(shares[1])],
+    ...(data.lines ? [] : [[data.ramps ? "duty first" : "duty x", duty(shares[0], 0)], [data.ramps ? "duty second" : "duty y", duty(shares[1], 1)],
     ["contour error", fixed(update.error_mm, 4, "mm")], ["greatest, drawn", fixed(update.worst_mm, 4, "mm")]]),
     ["anomalies", String(update.anomalies)],
   ]);
@@ -173,14 +178,18 @@ $("stop").addEventListener("pointerdown", (event) => { pressed = event.timeStamp
 // By hand: a step at each press, or, where the step is "held", on and on until it is let go.
 const ARROWS = { ArrowLeft: "-1 0", ArrowRight: "1 0", ArrowUp: "0 1", ArrowDown: "0 -1" };
 // How far the pen may go that way inside the machine's area, mm; a machine refuses what leads beyond it.
+// The machine's area, as the origin of the drawing has it.
+const reach = () => data.lines ? data.box : data.box.map((mm, n) => mm + last.p1[n % 2] - data.p1[n % 2]);
 function room(x, y) {
-  const [x0, y0, x1, y1] = data.box, along = (sign, at, low, high) => sign ? Math.max(0, sign < 0 ? at - low : high - at) : Infinity;
+  const [x0, y0, x1, y1] = reach(), along = (sign, at, low, high) => sign ? Math.max(0, sign < 0 ? at - low : high - at) : Infinity;
   return Math.min(along(x, last.at[0], x0, x1), along(y, last.at[1], y0, y1));
 }
 const PIECE_MS = 100; // a held key moves it by so much at a time: what stops asking, stops it
 let held = null;
 const value = (id) => Number($(id).value) || 0;
-const jogSpeed = () => Math.max(0.1, value("jog-speed"));
+const jogSpeed = () => data.lines ? Math.max(0.1, value("jog-speed")) : TARGETS_MM_S;
+// A machine of targets goes as fast as it does: a held key asks for so much of its way at a time.
+const TARGETS_MM_S = 30;
 function jogBy(direction, by) {
   const [x, y] = direction.split(" ").map(Number);
   if (by > 0) ask(["jog", x * by, y * by, jogSpeed()].join(" "));
@@ -189,13 +198,24 @@ function jog(direction) {
   const step = Number($("step").value), [x, y] = direction.split(" ").map(Number);
   if (step) { jogBy(direction, step); return; }
   letGo();
+  if (data.ramps) { // one long move while it is held: the voltage grows by the machine's own ramp
+    const hold = () => ask(["hold", x, y].join(" "));
+    hold(); held = setInterval(hold, PIECE_MS);
+    return;
+  }
   const piece = (times) => jogBy(direction, Math.floor(Math.min(jogSpeed() * PIECE_MS * 1e-3 * times, room(x, y)) * 1e3) / 1e3);
   piece(2); // one ahead, so that it does not stop between two of them
   held = setInterval(() => piece(1), PIECE_MS);
 }
+// A count that way: 1 and 2 for x, 3 and 4 for y, forwards and back.
+const pulse = (digit) => ask("pulse " + digit);
 function letGo() { if (held !== null) { clearInterval(held); held = null; ask("end-jog"); } }
 if (data.hand) {
   $("hand").hidden = $("keys-by-hand").hidden = false;
+  $("keys-of-targets").hidden = data.lines;
+  for (const each of document.querySelectorAll(data.lines ? ".targets" : ".lines")) each.hidden = true;
+  $("pulse").addEventListener("click", () => pulse(1 + Math.floor(Math.random() * 4)));
+  $("p1").addEventListener("click", () => ask(["p1", Math.round(value("p1-x")), Math.round(value("p1-y"))].join(" ")));
   for (const each of document.querySelectorAll("[data-jog]")) {
     each.addEventListener("pointerdown", (event) => { if (!each.disabled) { each.setPointerCapture(event.pointerId); jog(each.dataset.jog); } });
     for (const name of ["pointerup", "pointercancel", "lostpointercapture"]) each.addEventListener(name, letGo);
@@ -208,12 +228,12 @@ if (data.hand) {
   $("feed").addEventListener("input", () => { $("feed-said").textContent = $("feed").value + " %"; });
   $("feed").addEventListener("change", () => { ask("feed " + $("feed").value); $("feed").blur(); });
   $("pen-down-set").addEventListener("click", () => ask("pen-down " + Math.round(value("pen-down"))));
-  const names = { line: ["to x", "to y"], rectangle: ["width", "height"], circle: ["radius", "points"] };
+  const names = { line: ["to x", "to y"], rectangle: ["width", "height"], circle: ["radius", "points (0: by the error)"] };
   const usual = { line: [30, 10], rectangle: [30, 20], circle: [10, 72] };
   $("shape").addEventListener("change", () => ["a", "b"].forEach((id, n) => {
     $("shape-" + id + "-name").textContent = names[$("shape").value][n]; $("shape-" + id).value = usual[$("shape").value][n];
   }));
-  $("draw-shape").addEventListener("click", () => ask([$("shape").value, ...["shape-x", "shape-y", "shape-a", "shape-b", "shape-speed"].map(value)].join(" ")));
+  $("draw-shape").addEventListener("click", () => ask([$("shape").value, ...["shape-x", "shape-y", "shape-a", "shape-b", "shape-speed", "shape-error"].map(value)].join(" ")));
 }
 $("order").addEventListener("input", () => {
   $("order-said").textContent = Math.round($("order").value / 10) + " %";
@@ -225,7 +245,12 @@ window.addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.altKey || event.metaKey || event.repeat || event.target.matches?.("button:enabled, input, select, summary")) return;
   if (data.hand && ARROWS[event.key]) { event.preventDefault(); jog(ARROWS[event.key]); return; }
   const running = last && last.state === "running";
-  const command = { Enter: "start", " ": running ? "pause" : "resume", c: "clear" }[event.key];
+  if (data.hand && !data.lines && last) { // as the published program has them
+    if (event.key === "+") { event.preventDefault(); ask("next"); return; }
+    if ("1234".includes(event.key)) { event.preventDefault(); pulse(event.key); return; }
+    if (event.key === " " && ["ready", "watching"].includes(last.state)) { event.preventDefault(); pulse(1 + Math.floor(Math.random() * 4)); return; }
+  }
+  const command = { Enter: "start", " ": running ? "pause" : "resume", c: "clear", C: "clear" }[event.key];
   if (command) { event.preventDefault(); ask(command); }
 });
 window.addEventListener("repaint", () => { layer = null; charts.forEach((chart) => chart.changed()); paint(); });
