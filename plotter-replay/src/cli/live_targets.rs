@@ -71,7 +71,6 @@ impl Live {
             nonce: u16::try_from(clock_bits() & 0xffff).unwrap_or(1),
             baud: config.serial.baud,
             resume: resume.map(|point| point.resume),
-            ..SessionSettings::default()
         };
         let area_mm = [0.0, 0.0, config.area.width_mm, config.area.height_mm];
         self.describe(&mut page, machine, &connected.name);

@@ -366,6 +366,9 @@ impl<'a, W: Write> Engine<'a, W> {
         let (is_drawing, then) = self.desk.done();
         if !is_drawing {
             self.note_by_hand(self.desk.reached_by_hand(), REACHED);
+            if self.desk.is_idle() {
+                self.take(Event::Pen(self.desk.pen())); // lifted behind a shape
+            }
         }
         lock(&self.shared.view).hand.rests = self.desk.is_idle();
         if then == Some(Fed::Paused) {

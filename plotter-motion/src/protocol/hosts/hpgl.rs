@@ -106,9 +106,9 @@ impl Hpgl {
     fn lead(&mut self, out: &mut OpText) -> core::fmt::Result {
         if core::mem::take(&mut self.begins) {
             match self.flow {
-                HpglFlow::Asked => write!(out, "\x1b.@;0:\x1b.M;;;10:\n")?,
-                HpglFlow::XonXoff => write!(out, "\x1b.@;0:\x1b.I128;;17:\x1b.N;19:\x1b.M;;;10:\n")?,
-                HpglFlow::Dtr => write!(out, "\x1b.@;1:\x1b.M;;;10:\n")?,
+                HpglFlow::Asked => writeln!(out, "\x1b.@;0:\x1b.M;;;10:")?,
+                HpglFlow::XonXoff => writeln!(out, "\x1b.@;0:\x1b.I128;;17:\x1b.N;19:\x1b.M;;;10:")?,
+                HpglFlow::Dtr => writeln!(out, "\x1b.@;1:\x1b.M;;;10:")?,
             }
             writeln!(out, "IN;SP{};", self.pen)?;
         }
