@@ -1,4 +1,4 @@
-//! The follower follow_paper drawings of many kinds, as the example `follow` does it.
+//! The follower on drawings of many kinds, as the example `follow` does it.
 
 use crate::follow_drawings;
 use crate::follow_figures;
