@@ -3,7 +3,7 @@
 use super::clock::Clock;
 use super::line::Line;
 use super::pins::{PinA, PinB};
-use super::start;
+use super::setup;
 use crate::board::{Event, Notice, StepperPins, has_come};
 use crate::machine;
 use core::convert::Infallible;
