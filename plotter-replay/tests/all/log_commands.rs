@@ -343,7 +343,7 @@ fn memory_does_not_grow_with_the_log() {
         let mut text = Vec::new();
         while done < events {
             let x = lines * 37 % 100_000;
-            writeln!(text, "G1 X{}.{:03} Y{}.000", x / 1_000, x % 1_000, lines % 90).unwrap();
+            write!(text, "G1 X{}.{:03} Y{}.000\n", x / 1_000, x % 1_000, lines % 90).unwrap();
             lines += 1;
             if text.len() < 64 {
                 continue;

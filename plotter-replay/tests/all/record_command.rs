@@ -256,9 +256,7 @@ fn share_of_a_core(baud: u32, [host_text, plotter_text]: [&'static [u8]; 2]) -> 
     let plotter = Plotter::new();
     let (mut child, host) = start(&plotter, here, &["--baud", &baud.to_string()]);
     let Plotter { line, port, .. } = plotter;
-    // A start bit, eight of data and a stop bit.
-    let bytes_in =
-        move |time: Duration| usize::try_from(time.as_micros() * u128::from(baud) / 10_000_000).unwrap();
+    let bytes_a_second = f64::from(baud) / 10.0;
     let far = line.try_clone_native().unwrap();
     let near = host.try_clone().unwrap();
     let before = on_processor(child.id());
@@ -272,7 +270,7 @@ fn share_of_a_core(baud: u32, [host_text, plotter_text]: [&'static [u8]; 2]) -> 
             let mut sent = 0;
             while began.elapsed() < LASTS {
                 std::thread::sleep(Duration::from_millis(1));
-                let due = bytes_in(began.elapsed());
+                let due = (began.elapsed().as_secs_f64() * bytes_a_second) as usize;
                 let piece: Vec<u8> = (sent..due).map(|n| text[n % text.len()]).collect();
                 to.write_all(&piece).unwrap();
                 sent = due;
@@ -295,7 +293,7 @@ fn share_of_a_core(baud: u32, [host_text, plotter_text]: [&'static [u8]; 2]) -> 
     drop(port);
     let share = took.as_secs_f64() / LASTS.as_secs_f64();
     println!("{baud} baud, sent and got {counts:?}: {:.2} % of a core", 100.0 * share);
-    let least = bytes_in(LASTS) / 5 * 4;
+    let least = (0.8 * bytes_a_second * LASTS.as_secs_f64()) as usize;
     assert!(counts.iter().all(|&count| count > least), "{counts:?}");
     share
 }
