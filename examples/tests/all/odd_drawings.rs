@@ -113,7 +113,7 @@ fn more_pens_than_there_are_numbers_are_counted() {
             "a.dxf",
             dxf_layers,
             &[],
-            "beyond the 255th has no pen of its own: pen 255 draws it; put several in one layer (45 times)",
+            "beyond the 255th has no pen of its own: pen 255 draws it; put several in one layer (45 of them)",
         ),
     ];
     for (name, text, options, expected) in cases {

@@ -110,7 +110,7 @@ fn the_jerk_is_limited_as_a_vector_where_that_is_asked_for() {
         "PD, 00800, 00000\nPD, 00800, 00800\nPD, 00000, 00800\nPU, 02000, 02000\nPD, 02400, 02000\n",
     );
     let (steps, plain_steps) = (folder.file("steps.txt"), folder.file("plain.txt"));
-    let measured = [&MEASURED[..7], &["--steps-per-mm", "1000", "--tolerance-mm", "0.05"]].concat();
+    let measured = [&MEASURED[..6], &["--steps-per-mm", "1000", "--tolerance-mm", "0.05"]].concat();
     let options = [&[square.as_str()][..], &measured].concat();
     let plain = folder.stepper_report(&[&options[..], &["--steps", &plain_steps]].concat());
     let limit = ["--jerk-vector", "20000", "--steps", &steps];

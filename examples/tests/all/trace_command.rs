@@ -109,7 +109,8 @@ fn curves_reach_every_file() {
     }
     assert!(complaint("trace", &["--algorithm", "published", "--curves"]).contains("draws straight lines"));
     let both = "'--arcs' cannot be used with '--curves'";
-    assert!(complaint("trace", &[&picture, "--arcs", "--curves"]).contains(both));
+    let refused = run_example("trace", &[&picture, "--arcs", "--curves"]);
+    assert!(!refused.status.success() && String::from_utf8_lossy(&refused.stderr).contains(both));
     std::fs::write(&config, "schema = 1\n[vectorize]\narcs = true\n").unwrap();
     assert!(
         complaint("trace", &[&picture, "--config", &config])
