@@ -116,7 +116,7 @@ fn the_first_error_of_the_file_is_told_first() {
 
 #[test]
 fn a_quoted_key_with_a_dot_is_not_the_key_it_spells() {
-    assert_snapshot!(message("\"area.width_mm\" = 1"), @"line 2, column 1: unknown key `area.width_mm`; known here: `schema`, `name`, `drive`, `area`, `serial`, `control`, `sync_stop`, `planner`, `pen`, `laser`, `homing`, `stepper_motor`, `vectorize`, `z`, `second_motor`, `kinematics`, `belt`, `point_to_point`, `sheet`, `x`, `y`");
+    assert_snapshot!(message("\"area.width_mm\" = 1"), @"line 2, column 1: unknown key `area.width_mm`; known here: `schema`, `name`, `drive`, `area`, `serial`, `control`, `sync_stop`, `planner`, `pen`, `laser`, `homing`, `stepper_motor`, `vectorize`, `z`, `second_motor`, `kinematics`, `belt`, `point_to_point`, `sheet`, `follower`, `x`, `y`");
 }
 
 #[test]

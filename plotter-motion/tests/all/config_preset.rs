@@ -17,32 +17,32 @@ struct Preset {
 const GANTRY: Preset = Preset {
     file: "semi-virtual-gantry.toml",
     config: MachineConfig::default,
-    keys: (39, 20),
+    keys: (38, 20),
     repeats: "[y]",
 };
 const STEPPER_PLOTTER: Preset = Preset {
     file: "stepper-plotter.toml",
     config: MachineConfig::stepper_plotter,
-    keys: (63, 5),
+    keys: (62, 5),
     repeats: "[y.stepper]",
 };
 
 const MARKING_BOARD: Preset = Preset {
     file: "marking-board.toml",
     config: MachineConfig::marking_board,
-    keys: (56, 14),
+    keys: (55, 14),
     repeats: "[y]",
 };
 
 const TEXTILE_PLOTTER: Preset = Preset {
     file: "textile-plotter.toml",
     config: MachineConfig::textile_plotter,
-    keys: (69, 5),
+    keys: (68, 5),
     repeats: "[y.stepper]",
 };
 
 const PLASMA_FOLLOWER: Preset =
-    Preset { file: "plasma-follower.toml", config: plasma_follower, keys: (66, 5), repeats: "[y.stepper]" };
+    Preset { file: "plasma-follower.toml", config: plasma_follower, keys: (65, 5), repeats: "[y.stepper]" };
 
 /// The camera and the torch are chosen, not documented: the code has no such machine, so it is said here.
 fn plasma_follower() -> MachineConfig {

@@ -62,8 +62,11 @@ impl HandWay {
     pub(super) fn next(&mut self) -> (Piece, bool) {
         let piece_s = f64::from(PIECE_MS) * 1e-3;
         let rest_mm = (self.length_mm - self.done_mm).max(0.0);
-        // So fast at most that it can still brake before the end.
-        let brakes_mm_s = libm::sqrt(2.0 * self.accel_mm_s2 * rest_mm);
+        // So fast at most that from the end of this piece on it can still brake: v² = 2 a (rest - piece).
+        let half_mm_s = 0.5 * self.accel_mm_s2 * piece_s;
+        let square =
+            half_mm_s * half_mm_s + 2.0 * self.accel_mm_s2 * rest_mm - 2.0 * half_mm_s * self.now_mm_s;
+        let brakes_mm_s = (libm::sqrt(square.max(0.0)) - half_mm_s).max(0.0);
         let then_mm_s = (self.now_mm_s + self.accel_mm_s2 * piece_s).min(self.speed_mm_s).min(brakes_mm_s);
         let by_mm = 0.5 * (self.now_mm_s + then_mm_s) * piece_s;
         // What is left is less than a piece at this speed, or than a ramp has in two of them.
