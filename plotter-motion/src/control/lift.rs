@@ -131,11 +131,11 @@ impl core::error::Error for LiftFault {}
 ///     height_mm += f64::from(drive.z().value()) * 20.0 * 0.001;
 ///     let drivers = if lift.is_there() { Drivers::Ready } else { Drivers::Busy };
 ///     if plotter.poll(now, drivers).is_some() {
-///         first_step.get_or_insert(height_mm);
+///         first_step.get_or_insert((lift.state(), height_mm));
 ///     }
 /// }
-/// assert_eq!(lift.state(), LiftState::At(Pen::Down));
-/// assert!(first_step.is_some_and(|height_mm| height_mm <= 0.0)); // nothing was drawn above the sheet
+/// let (state, height_mm) = first_step.unwrap(); // nothing was drawn above the sheet
+/// assert!(state == LiftState::At(Pen::Down) && height_mm <= 0.0);
 /// # Ok::<(), plotter_motion::firmware::stepper_plotter::SettingsError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]

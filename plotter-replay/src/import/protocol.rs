@@ -31,7 +31,14 @@ pub fn protocol_of(host: &[u8], machine: &[u8]) -> &'static str {
     }
     let begins = |bytes: &[u8], words: &[&str]| {
         let mut lines = bytes.split(|byte| matches!(byte, b'\r' | b'\n'));
-        lines.any(|line| words.iter().any(|word| line.starts_with(word.as_bytes())))
+        // `M104` is another word than `M10`.
+        let is_whole = |word: &str, rest: &[u8]| {
+            !(word.ends_with(|c: char| c.is_ascii_digit()) && rest.first().is_some_and(u8::is_ascii_digit))
+        };
+        let is = |line: &[u8], word: &str| {
+            line.strip_prefix(word.as_bytes()).is_some_and(|rest| is_whole(word, rest))
+        };
+        lines.any(|line| words.iter().any(|word| is(line, word)))
     };
     for (protocol, said, answered) in TELL {
         if begins(machine, answered) || begins(host, said) {
