@@ -105,7 +105,8 @@ fn tool_of(path: &Path) -> Result<Tool, String> {
     })
 }
 
-/// So much of a log tells which protocol it is of, bytes: some ten thousand of the line, where each has a record.
+/// Length of a log's beginning that tells its protocol, bytes: it holds some ten thousand bytes of the line
+/// where each has a record of its own.
 const LOG_BEGINNING: usize = 1 << 18;
 
 /// The beginning of a log, which nothing is written into behind that.

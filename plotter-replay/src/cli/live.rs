@@ -39,7 +39,8 @@ pub(crate) struct Live {
     /// How a pen plotter with HPGL says that it has no room.
     #[arg(long, value_enum, default_value_t)]
     pub(super) flow: Flow,
-    /// Bits a second of the line to a machine with stepper motors [default: the machine's; where nothing answers, the usual ones].
+    /// Baud rate of the line to a machine with stepper motors [default: the machine's; where nothing answers,
+    /// the usual ones].
     #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(50..=4_000_000))]
     pub(super) baud: Option<u32>,
     /// Go on with the drawing that the host of this log was sending when it ended; the machine must have been

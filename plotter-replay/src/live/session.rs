@@ -43,7 +43,8 @@ pub(super) struct Shared {
 
 impl Session {
     /// Opens a session on `line`. With a drawing it waits for [`Command::Start`]; without, it watches, and
-    /// the machine is led by hand only: nothing is sent before somebody asks for it. What happens goes to `recorder`. What no byte tells of a simulated machine comes from `telemetry`.
+    /// the machine is led by hand only: nothing is sent before somebody asks for it. What happens goes to
+    /// `recorder`. What no byte tells of a simulated machine comes from `telemetry`.
     #[must_use]
     pub fn open<W: Write + Send + 'static>(
         line: Arc<dyn Line>,

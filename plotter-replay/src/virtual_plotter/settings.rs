@@ -98,7 +98,8 @@ pub struct SettingsError {
 
 impl PlotterSettings {
     /// The defaults with what a log's header says: `x_mm_per_pulse`, `y_mm_per_pulse`, `p1_x_mm`, `p1_y_mm`,
-    /// `begins_x_mm` and `begins_y_mm`, `resync_gap_ms`, `reached_tolerance_counts`, `belt_signs` and `protocol`, each optional.
+    /// `begins_x_mm` and `begins_y_mm`, `resync_gap_ms`, `reached_tolerance_counts`, `belt_signs` and
+    /// `protocol`, each optional.
     ///
     /// # Errors
     ///
