@@ -130,6 +130,7 @@ impl core::error::Error for LiftFault {}
 ///     let drive = gate.pass_z(lift.update(now, switches));
 ///     height_mm += f64::from(drive.z().value()) * 20.0 * 0.001;
 ///     let drivers = if lift.is_there() { Drivers::Ready } else { Drivers::Busy };
+///     while plotter.transmit(now).is_some() {} // to the host: lines wait while answers do
 ///     if plotter.poll(now, drivers).is_some() {
 ///         first_step.get_or_insert((lift.state(), height_mm));
 ///     }
