@@ -6,7 +6,8 @@ use crate::drawings::{Arrangement, Diagnostics, Language, PenLines, SvgReading, 
 use crate::shared::at;
 use plotter_motion::drawing::Hatching;
 use plotter_motion::hpgl::{cutter, thesis_text};
-use plotter_motion::{PlotOp, Point, Vec2, dxf, gcode, hpgl, toolpath::chords};
+use plotter_motion::toolpath::{ModalState, chords};
+use plotter_motion::{PlotOp, Point, Vec2, dxf, gcode, hpgl};
 use plotter_vector::svg_in::SvgFonts;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -618,36 +619,18 @@ impl<'a> Ops<'a> {
     /// from there on.
     pub(crate) fn beginning_at(mut self, line: u32) -> Self {
         let place = Rc::clone(&self.place);
-        let (mut before, mut at, mut begun) = (Vec::new(), Point::ORIGIN, false);
-        let (mut pen, mut power) = (None, None);
-        let mut inner = std::mem::replace(&mut self.inner, Box::new(std::iter::empty()));
-        self.inner = Box::new(std::iter::from_fn(move || {
-            loop {
-                if let Some(op) = before.pop() {
-                    return Some(Ok(op));
+        let mut state = Some(ModalState::default());
+        let inner = std::mem::replace(&mut self.inner, Box::new(std::iter::empty()));
+        self.inner = Box::new(inner.flat_map(move |item| {
+            let op = match (item, &mut state) {
+                (Ok(op), Some(state)) if place.line.get() < line => {
+                    state.pass(&op);
+                    return Vec::new();
                 }
-                let item = inner.next()?;
-                let Ok(op) = item else { return Some(item) };
-                if begun {
-                    return Some(Ok(op));
-                }
-                if place.line.get() >= line {
-                    begun = true;
-                    // Last in, first out.
-                    before.push(op);
-                    if op.target().is_some() && !matches!(op, PlotOp::Travel { .. }) {
-                        before.push(PlotOp::Travel { to: at });
-                    }
-                    before.extend(power);
-                    before.extend(pen);
-                    continue;
-                }
-                match op {
-                    PlotOp::SelectPen { .. } => pen = Some(op),
-                    PlotOp::LaserPower { .. } => power = Some(op),
-                    _ => at = op.target().unwrap_or(at),
-                }
-            }
+                (Ok(op), _) => op,
+                (diagnostic, _) => return vec![diagnostic],
+            };
+            state.take().map_or_else(|| vec![Ok(op)], |state| state.resume(op).map(Ok).collect())
         }));
         self
     }

@@ -151,6 +151,27 @@ impl Drawing {
         self.only(|stroke| stroke.layer == layer)
     }
 
+    /// Leaves out the strokes before the first one of a layer, to go on with a drawing from there; says how
+    /// many. `None`, and nothing is left out, if nothing is on that layer. Each stroke that remains has its
+    /// own pen and power. From an operation on,
+    /// [`ModalState`](crate::toolpath::ModalState) tells what holds there.
+    ///
+    /// ```
+    /// use plotter_motion::{Point, drawing::{Drawing, Stroke}};
+    /// let on = |layer: u32| {
+    ///     let y = f64::from(layer);
+    ///     Stroke { layer, ..Stroke::through([Point::new(0.0, y), Point::new(9.0, y)]).unwrap() }
+    /// };
+    /// let mut drawing: Drawing = [on(1), on(1), on(2), on(1)].into_iter().collect();
+    /// assert_eq!((drawing.begin_at_layer(3), drawing.begin_at_layer(2)), (None, Some(2)));
+    /// assert_eq!(drawing.strokes, [on(2), on(1)]);
+    /// ```
+    pub fn begin_at_layer(&mut self, layer: u32) -> Option<usize> {
+        let first = self.strokes.iter().position(|stroke| stroke.layer == layer)?;
+        self.strokes.drain(..first);
+        Some(first)
+    }
+
     /// The strokes that `wanted` selects.
     #[must_use]
     pub fn only(&self, mut wanted: impl FnMut(&Stroke) -> bool) -> Self {

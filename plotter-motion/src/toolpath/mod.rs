@@ -2,6 +2,7 @@
 //! (controller, writer, splitter, canvas) takes.
 
 pub(crate) mod chords;
+mod modal_state;
 pub(crate) mod shapes;
 mod targets;
 
@@ -9,6 +10,7 @@ pub use crate::steps::from_mm;
 use crate::{Point, StepPoint};
 pub use chords::chords;
 use core::time::Duration;
+pub use modal_state::ModalState;
 pub use shapes::{circle, rectangle};
 pub use targets::{OutOfReach, targets};
 

@@ -42,14 +42,22 @@ const FEWEST_SHAKES: u64 = 300;
 
 /// A shorter order of the visits, by the places where they are entered. `budget` counts what is looked at and
 /// what is moved.
-pub(super) fn shorten(sites: &Sites<'_>, entries: Vec<u32>, from: Option<PxPoint>, budget: u64) -> Vec<u32> {
+pub(super) fn shorten(
+    sites: &Sites<'_>,
+    entries: Vec<u32>,
+    from: Option<PxPoint>,
+    budget: u64,
+    shakes: bool,
+) -> Vec<u32> {
     if entries.len() != sites.len() || entries.len() < 2 || !has_way(sites, &entries, from) {
         return entries;
     }
     let mut search = Search::new(sites, &entries, from, budget);
     search.settle();
-    search.turned = TURNED_LATER;
-    search.shake();
+    if shakes {
+        search.turned = TURNED_LATER;
+        search.shake();
+    }
     search.route.visits().into_iter().map(|visit| visit.entry).collect()
 }
 

@@ -51,6 +51,35 @@ fn exactly_meeting() -> Order {
     Order { merge_gap_px: 0.0, ..Order::default() }
 }
 
+/// From each end to the nearest stroke, and nothing changed afterwards.
+fn nearest() -> Order {
+    Order { effort: OrderEffort::Fast, budget: 0, ..Order::default() }
+}
+
+/// Lines of up to 4 px, `side` times `side` of them, one to each square of 12 px.
+fn scattered(side: u32) -> Drawing {
+    let mut random = plotter_motion::SplitMix64::new(7);
+    let mut drawing = Drawing::new(12 * side, 12 * side);
+    for square in 0..side * side {
+        let corner = (f64::from(12 * (square % side)), f64::from(12 * (square / side)));
+        let mut place = |from: f64, within: usize| from + random.below(within) as f64;
+        let from = PxPoint::new(place(corner.0, 12), place(corner.1, 12));
+        drawing.push([from, PxPoint::new(place(from.x, 5), place(from.y, 5))]);
+    }
+    drawing
+}
+
+#[test]
+fn the_fast_shortens_the_way_of_the_nearest_up_to_25_000_strokes() {
+    let way = |side, order: Order| {
+        Order { one_stroke: false, merge_gap_px: 0.0, ..order }.apply(&scattered(side)).pen_up_px()
+    };
+    let fast = Order { effort: OrderEffort::Fast, ..Order::default() };
+    let [nearest_px, fast_px, best_px] = [nearest(), fast, Order::default()].map(|order| way(40, order));
+    assert!(fast_px < 0.9 * nearest_px && best_px < fast_px, "{best_px}, {fast_px}, {nearest_px} px");
+    assert_eq!(way(160, fast), way(160, nearest())); // 25,600: the nearest is all
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
@@ -136,7 +165,7 @@ proptest! {
     #[test]
     fn the_next_dot_is_the_nearest_one_left(places in proptest::collection::vec((0_u32..30, 0_u32..30), 1..40)) {
         let drawing = drawing_of(&places.iter().map(|place| vec![*place]).collect::<Vec<_>>(), 1.0);
-        let ordered = Order { effort: OrderEffort::Fast, ..Order::default() }.apply(&drawing);
+        let ordered = nearest().apply(&drawing);
         let dots: Vec<PxPoint> = ordered.strokes().map(|dot| dot[0]).collect();
         // Unless the given order was better.
         let greedy = dots.iter().enumerate().skip(1).all(|(index, dot)| {
@@ -150,7 +179,7 @@ proptest! {
     fn the_next_line_is_the_nearest_one_left_from_either_end(strokes in strokes(40, 40)) {
         let lines: Vec<_> = strokes.into_iter().filter(|stroke| stroke.first() != stroke.last()).collect();
         let drawing = drawing_of(&lines, 1.0);
-        let unjoined = Order { effort: OrderEffort::Fast, one_stroke: false, ..exactly_meeting() };
+        let unjoined = Order { one_stroke: false, merge_gap_px: 0.0, ..nearest() };
         let ordered = unjoined.apply(&drawing);
         let ends: Vec<(PxPoint, PxPoint)> =
             ordered.strokes().map(|line| (line[0], line[line.len() - 1])).collect();
@@ -166,8 +195,18 @@ proptest! {
     #[test]
     fn without_a_budget_the_best_is_the_fast(strokes in strokes(40, 40)) {
         let drawing = drawing_of(&strokes, 1.0);
-        let fast = Order { effort: OrderEffort::Fast, ..Order::default() }.apply(&drawing);
-        prop_assert_eq!(Order { budget: 0, ..Order::default() }.apply(&drawing), fast);
+        prop_assert_eq!(Order { budget: 0, ..Order::default() }.apply(&drawing), nearest().apply(&drawing));
+    }
+
+    #[test]
+    fn the_fast_is_never_worse_than_the_nearest(strokes in strokes(40, 40)) {
+        // Lines only, and not joined, as above.
+        let lines: Vec<_> = strokes.into_iter().filter(|stroke| stroke.first() != stroke.last()).collect();
+        let drawing = drawing_of(&lines, 1.0);
+        let nearest = Order { one_stroke: false, merge_gap_px: 0.0, ..nearest() };
+        let fast = Order { budget: Order::default().budget, ..nearest };
+        let [nearest_px, fast_px] = [nearest, fast].map(|order| order.apply(&drawing).pen_up_px());
+        prop_assert!(fast_px <= nearest_px + ROUNDING_PX, "{fast_px} of {nearest_px} px");
     }
 
     #[test]
