@@ -4,10 +4,10 @@ use crate::drawings::arrangement::Hidden;
 use crate::drawings::language::is_dm_pl;
 use crate::drawings::{Arrangement, Diagnostics, Language, PenLines, SvgReading, svg_drawing};
 use crate::shared::at;
-use plotter_motion::drawing::Hatching;
+use plotter_motion::drawing::{Bounds, Hatching};
 use plotter_motion::hpgl::{cutter, thesis_text};
 use plotter_motion::toolpath::{ModalState, chords};
-use plotter_motion::{PlotOp, Point, Vec2, dxf, gcode, hpgl};
+use plotter_motion::{PlotOp, Vec2, dxf, gcode, hpgl};
 use plotter_vector::svg_in::SvgFonts;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -402,8 +402,15 @@ impl DrawingFile {
                     pens: self.svg.pens.map_or(dxf::Pens::ByLayer, dxf::Pens::from),
                     ..dxf::ReadOptions::default()
                 };
-                let moved;
-                (options.moved_mm, moved, colours) = placed(drawing, options);
+                let placed = placed(drawing, options);
+                (options.moved_mm, colours) = (placed.moved_mm, placed.colours);
+                let unit_mm = drawing.unit_mm().filter(|_| how.step_mm.is_none());
+                let is_resized = self.arrangement.fit.is_some() || self.arrangement.scale.is_some();
+                let large = very_large(placed.size_mm, unit_mm).filter(|_| !is_resized);
+                if let Some((VeryLarge::ForAll, text)) = large {
+                    return Err(format!("{}: {text}", self.name));
+                }
+                let large = large.map(|(_, text)| Diagnostic::new(Severity::Warning, text));
                 layers = Rc::new(drawing.layers().map(str::to_owned).collect());
                 let mut ops = drawing.plot_ops(options);
                 let place = Rc::clone(&place);
@@ -419,7 +426,7 @@ impl DrawingFile {
                         Diagnostic { line, ..Diagnostic::new(severity, error.problem.to_string()) }
                     })
                 });
-                Box::new(moved.map(Err).into_iter().chain(ops))
+                Box::new(placed.moved.into_iter().chain(large).map(Err).chain(ops))
             }
         };
         Ok(Ops { inner, place, colours, digit_mm, sheet_mm, layers, failed: false })
@@ -461,14 +468,30 @@ impl DrawingFile {
 /// Farthest from the origin that a drawing of a CAD program may begin, mm: no table is as large.
 const FARTHEST_MM: f64 = 10_000.0;
 
-/// By how much a DXF is moved, what there is to say of that, and the colours of its pens. Drawings of CAD
-/// programs lie anywhere; what begins to the left of the origin, below it, or far from it is put there with
-/// its lower left corner.
-fn placed(drawing: &dxf::Drawing, options: dxf::ReadOptions) -> (Vec2, Option<Diagnostic>, Vec<[u8; 3]>) {
+/// Largest drawing that is written or drawn, mm: the coordinates of G-code and of SVG end there.
+const LARGEST_MM: f64 = 100_000.0;
+
+/// Longest side that a drawing in a larger unit than the millimetre has before its unit is doubted, mm: that
+/// of the largest table of the documented machines.
+const LONG_SIDE_MM: f64 = 2_000.0;
+
+/// Where a DXF is put, and what there is to say of that.
+struct Placed {
+    moved_mm: Vec2,
+    moved: Option<Diagnostic>,
+    size_mm: Vec2,
+    /// Those of its pens.
+    colours: Vec<[u8; 3]>,
+}
+
+/// By how much a DXF is moved. Drawings of CAD programs lie anywhere; what begins to the left of the origin,
+/// below it, or far from it is put there with its lower left corner.
+fn placed(drawing: &dxf::Drawing, options: dxf::ReadOptions) -> Placed {
     let mut ops = drawing.plot_ops(options);
-    let least = chords(ops.by_ref().flatten(), FARTHEST_MM)
-        .filter_map(PlotOp::target)
-        .reduce(|least, at| Point::new(least.x.min(at.x), least.y.min(at.y)));
+    let mut bounds = Bounds::default();
+    /// Within this an arc's box is known, mm.
+    const BOX_MM: f64 = 0.1;
+    chords(ops.by_ref().flatten(), BOX_MM).filter_map(PlotOp::target).for_each(|at| bounds.grow(at));
     let most_pen = ops.pens().map(|(pen, _)| pen).max().unwrap_or(0);
     let mut colours: Vec<[u8; 3]> = (1..=most_pen).map(crate::shared::usual_colour).collect();
     for (pen, colour) in ops.pens() {
@@ -479,14 +502,50 @@ fn placed(drawing: &dxf::Drawing, options: dxf::ReadOptions) -> (Vec2, Option<Di
     /// What rounding may put to the left of an origin on which the drawing stands, mm.
     const ROUNDING_MM: f64 = 1e-6;
     let is_fine = |at: f64| (-ROUNDING_MM..=FARTHEST_MM).contains(&at);
-    let Some(least) = least.filter(|least| !is_fine(least.x) || !is_fine(least.y)) else {
-        return (Vec2::default(), None, colours);
-    };
+    let (width_mm, height_mm) = bounds.size_mm();
+    let size_mm = Vec2::new(width_mm, height_mm);
+    let least = bounds.least;
+    if bounds.is_empty() || is_fine(least.x) && is_fine(least.y) {
+        return Placed { moved_mm: Vec2::default(), moved: None, size_mm, colours };
+    }
     let text = format!(
         "the drawing begins at {:.3}, {:.3} mm: it is moved, so that its lower left corner is the origin",
         least.x, least.y
     );
-    (Vec2::new(-least.x, -least.y), Some(Diagnostic::new(Severity::Notice, text)), colours)
+    let moved = Some(Diagnostic::new(Severity::Notice, text));
+    Placed { moved_mm: Vec2::new(-least.x, -least.y), moved, size_mm, colours }
+}
+
+/// How large a drawing is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum VeryLarge {
+    /// It cannot be written.
+    ForAll,
+    /// Its unit is to be doubted.
+    ForItsUnit,
+}
+
+/// What there is to say of a very large drawing whose file says how large its unit is: many programs write
+/// metres without being asked, while their users mean millimetres.
+fn very_large(size_mm: Vec2, unit_mm: Option<f64>) -> Option<(VeryLarge, String)> {
+    let side_mm = size_mm.x.max(size_mm.y);
+    let unit_mm = unit_mm.filter(|unit_mm| *unit_mm > 1.0);
+    let large = match unit_mm {
+        _ if side_mm > LARGEST_MM => VeryLarge::ForAll,
+        Some(_) if side_mm > LONG_SIDE_MM => VeryLarge::ForItsUnit,
+        _ => return None,
+    };
+    let mut text = format!("the drawing is {:.1} x {:.1} m", size_mm.x / 1e3, size_mm.y / 1e3);
+    if let Some(unit_mm) = unit_mm {
+        text += &format!(
+            ", since it says that its unit is {unit_mm} mm: give --step-mm 1 if its numbers are millimetres ({:.1} x {:.1} mm)",
+            size_mm.x / unit_mm,
+            size_mm.y / unit_mm
+        );
+    }
+    text += if unit_mm.is_some() { ", else " } else { ": " };
+    text += "make it smaller by --fit A4 or --scale";
+    Some((large, text))
 }
 
 /// How a pen is lifted and lowered.

@@ -57,6 +57,33 @@ fn the_unit_can_be_said() {
 }
 
 #[test]
+fn a_drawing_of_many_metres_is_asked_for_its_unit() {
+    // 30 units wide and 25 high: what many programs write for metres, without being asked.
+    let metres = drawing(0.0).replace("\r\n 70\r\n4\r\n", "\r\n 70\r\n6\r\n");
+    let doubt = "the drawing is 30.0 x 25.0 m, since it says that its unit is 1000 mm: give --step-mm 1 if its numbers are \
+                 millimetres (30.0 x 25.0 mm), else make it smaller by --fit A4 or --scale";
+    let (gcode, said) = converted(&metres, "b.gcode", &[]);
+    assert!(gcode.contains("G1 X30000 Y0") && said.contains(doubt), "{gcode} {said}");
+    for (options, end) in [
+        (&["--step-mm", "1"][..], "G1 X30 Y0"),
+        (&["--scale", "0.001"], "G1 X30 Y0"),
+        (&["--fit", "60x60"], "G1 X60 Y"),
+    ] {
+        let (gcode, said) = converted(&metres, "b.gcode", options);
+        assert!(gcode.contains(end) && said.is_empty(), "{options:?}: {gcode} {said}");
+    }
+    // No machine is as large as this, whatever the unit.
+    let folder = Folder::new();
+    let input = folder.write("a.dxf", &metres.replace("\r\n30\r\n", "\r\n300\r\n"));
+    let said = complaint("convert", &[&input, &folder.file("b.gcode")]);
+    assert!(said.contains("the drawing is 300.0 x 25.0 m, since"), "{said}");
+    assert!(!std::path::Path::new(&folder.file("b.gcode")).exists());
+    let (gcode, said) =
+        converted(&metres.replace("\r\n30\r\n", "\r\n300\r\n"), "b.gcode", &["--step-mm", "1"]);
+    assert!(gcode.contains("G1 X300 Y0") && said.is_empty(), "{gcode} {said}");
+}
+
+#[test]
 fn other_formats_of_cad_programs_are_refused_by_name() {
     let folder = Folder::new();
     let output = folder.file("b.plt");
