@@ -17,6 +17,7 @@ use plotter_motion::plant::{Bench, BenchSettings};
 use plotter_motion::{
     LimitSwitches, Machine, Pen, PenMove, SafetyGate, StepPoint,
     config::{ControllerChoice, MachineKind, TransmissionConfig},
+    kinematics::Backlash,
 };
 use plotter_replay::compare::Ways;
 use plotter_replay::log::{self, Event, Header, Record, Writer};
@@ -61,7 +62,12 @@ fn sessions(name: &str, machine: &Machine) -> Vec<(String, Header, Machine)> {
     match machine.kind() {
         MachineKind::Steppers => {
             let [x, y] = [machine.config().x, machine.config().y].map(|axis| 1.0 / axis.stepper.steps_per_mm);
-            let header = header.with_decimal("x_mm_per_pulse", x).with_decimal("y_mm_per_pulse", y);
+            let mut header = header.with_decimal("x_mm_per_pulse", x).with_decimal("y_mm_per_pulse", y);
+            let play = Backlash::of(machine);
+            if play != Backlash::default() {
+                header = header.with_number("x_play_steps", play.x_steps.into());
+                header = header.with_number("y_play_steps", play.y_steps.into());
+            }
             let session = |protocol| {
                 (format!("{name}.{protocol}"), header.clone().with_text("protocol", protocol), *machine)
             };
@@ -169,12 +175,10 @@ fn assert_is_drawn(path: &Path, machine: &Machine) {
     plotter.finish();
     let [targets, reached] = [plotter.target_count(), plotter.reached_count()];
     assert_eq!([targets, reached], [4; 2], "{}", path.display());
-    // A place is met to half a step; a corner may be left by as much as the planner rounds it, and the steps that
-    // take up an axis' play are no way of the carriage.
+    // A place is met to half a step, and a corner may be left by as much as the planner rounds it.
     let config = machine.config();
-    let [x, y] = [config.x.stepper, config.y.stepper];
-    let steps_mm = 2.0 / x.steps_per_mm.min(y.steps_per_mm);
-    let most_mm = steps_mm + config.planner.path_tolerance_mm + x.backlash_mm.hypot(y.backlash_mm);
+    let steps_mm = 2.0 / config.x.stepper.steps_per_mm.min(config.y.stepper.steps_per_mm);
+    let most_mm = steps_mm + config.planner.path_tolerance_mm;
     let error = plotter.contour_error(Ways::Drawn);
     assert!(error.max_mm <= most_mm, "{}: {error:?}, at most {most_mm} mm", path.display());
 }
