@@ -19,6 +19,7 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 MACHINE = HERE.parent / "machines" / "stepper-plotter.toml"
 PATIENCE_S = 240  # for a sender; on a busy computer the machine falls behind
+ALL_S = PATIENCE_S + 120  # for it, the machine's start and end, and the run on its log
 
 
 class Wrong(Exception):
@@ -107,8 +108,16 @@ def lead(name, command, out):
         raise Wrong(f"the sender ended with status {status}: {text[-2000:]}")
 
 
+def over(signal_number, _):
+    raise Wrong(f"stopped by {signal.Signals(signal_number).name}: it may take {ALL_S} s")
+
+
 if __name__ == "__main__":
     _, NAME, SPEED, PLAN, *COMMAND = sys.argv
+    # Whatever hangs, the machine is ended.
+    for ends in (signal.SIGALRM, signal.SIGTERM):
+        signal.signal(ends, over)
+    signal.alarm(ALL_S)
     try:
         print(f"{NAME}: {run(NAME, SPEED, PLAN, COMMAND)}", flush=True)
     except Wrong as wrong:

@@ -15,8 +15,10 @@
 
 use criterion::measurement::{Measurement, ValueFormatter, WallTime};
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
+use plotter_motion::Point;
 use plotter_motion::protocol::digits::Reply;
 use plotter_replay::log::{EventRef, Header, Reader, RecordRef, Writer};
+use plotter_replay::{PlotterSettings, VirtualPlotter};
 use serde_json::Value;
 use std::hint::black_box;
 use std::io::Write as _;
@@ -118,6 +120,53 @@ fn write_jsonl_struct(mut out: Vec<u8>) -> Vec<u8> {
     out
 }
 
+/// A session of Grbl in records of 64 bytes: lines of a drawing, an `ok` for each, a report now and then.
+fn write_lines() -> (Vec<u8>, u64) {
+    let header = Header::new().with_number("baud", 115_200).with_text("protocol", "grbl");
+    let mut writer = Writer::new(Vec::new(), &header).unwrap();
+    let (mut text, mut answers, mut events, mut time) = (Vec::new(), Vec::new(), 0, Duration::ZERO);
+    let mut line = 0_u32;
+    while events < EVENTS {
+        // A spiral of chords of a millimetre or so, as drawings are.
+        let (angle, radius) = (f64::from(line % 4_000) * 0.05, f64::from(line % 4_000) * 0.02);
+        let (x, y) = (100.0 + radius * angle.cos(), 100.0 + radius * angle.sin());
+        writeln!(text, "G1 X{x:.3} Y{y:.3}").unwrap();
+        answers.extend_from_slice(b"ok\r\n");
+        if line.is_multiple_of(200) {
+            answers.extend_from_slice(b"[MSG:of no place]\r\n");
+        }
+        line += 1;
+        while text.len() >= 64 {
+            time += Duration::from_micros(5_556);
+            events += 64;
+            let event = EventRef::Host(&text[..64]);
+            writer.write_ref(&RecordRef { time, event }).unwrap();
+            text.drain(..64);
+        }
+        if answers.len() >= 16 {
+            events += answers.len() as u64;
+            writer.write_ref(&RecordRef { time, event: EventRef::Controller(&answers) }).unwrap();
+            answers.clear();
+        }
+    }
+    (writer.finish().unwrap(), events)
+}
+
+/// Reads and draws it: lines, answers, and the way that they make. How many moves, and where it ends.
+fn read_lines(log: &[u8]) -> (u64, Point) {
+    let mut reader = Reader::new(log).unwrap();
+    let mut plotter = VirtualPlotter::new(PlotterSettings::from_header(reader.header()).unwrap());
+    for record in reader.by_ref() {
+        plotter.push(&record.unwrap());
+        if plotter.legs().len() >= 1_000 {
+            black_box(plotter.take_noted());
+        }
+    }
+    plotter.finish();
+    assert_eq!(plotter.line_counts().unwrap().refused, 0);
+    (plotter.target_count(), plotter.position())
+}
+
 /// Time of this thread on the processor; where the system does not tell it, time on the clock.
 struct ProcessorTime(WallTime);
 
@@ -178,6 +227,12 @@ fn logs(criterion: &mut Criterion<ProcessorTime>) {
     reading.bench_function("JSON lines", |bencher| bencher.iter(|| read_jsonl(black_box(&jsonl))));
     reading.bench_function("JSON lines into a struct", |bencher| {
         bencher.iter(|| read_jsonl_struct(black_box(&jsonl)))
+    });
+    let (lines, events) = write_lines();
+    println!("a session of Grbl: {events} bytes of both sides, {:?}", read_lines(&lines));
+    reading.throughput(Throughput::Elements(events));
+    reading.bench_function("Grbl's lines, 64 bytes a record, drawn", |bencher| {
+        bencher.iter(|| read_lines(black_box(&lines)))
     });
     reading.finish();
     let mut writing = group(criterion, "write");

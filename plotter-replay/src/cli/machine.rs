@@ -5,6 +5,8 @@ use super::commands::{MOST_MACHINE_BYTES, read_file};
 use crate::log::Header;
 #[cfg(feature = "live")]
 use plotter_motion::config::{ControllerChoice, MachineKind};
+#[cfg(feature = "live")]
+use plotter_motion::kinematics::Backlash;
 use plotter_motion::{Machine, MachineConfig};
 use std::path::Path;
 
@@ -44,6 +46,16 @@ pub(crate) fn header_of(machine: &Machine, protocol: &str, boot: Option<u32>) ->
     }
 }
 
+/// The play of a machine's axes, where it has any, for the header of a log that has its steps.
+#[cfg(feature = "live")]
+fn with_play(header: Header, machine: &Machine) -> Header {
+    let Backlash { x_steps, y_steps } = Backlash::of(machine);
+    if (x_steps, y_steps) == (0, 0) {
+        return header;
+    }
+    header.with_number("x_play_steps", x_steps.into()).with_number("y_play_steps", y_steps.into())
+}
+
 /// What a log's header says of a machine that is led by lines of text.
 #[cfg(feature = "live")]
 pub(crate) fn lines_header(machine: &Machine, protocol: &str) -> Header {
@@ -55,9 +67,10 @@ pub(crate) fn lines_header(machine: &Machine, protocol: &str) -> Header {
     // Another machine's controller is not that of the preset, and takes a description.
     let is_preset = *config == MachineConfig::stepper_plotter();
     let header = if is_preset { header.with_text("controller", "stepper-plotter") } else { header };
-    header
+    let header = header
         .with_decimal("x_mm_per_pulse", 1.0 / config.x.stepper.steps_per_mm)
-        .with_decimal("y_mm_per_pulse", 1.0 / config.y.stepper.steps_per_mm)
+        .with_decimal("y_mm_per_pulse", 1.0 / config.y.stepper.steps_per_mm);
+    with_play(header, machine)
 }
 
 /// What the log of a simulated machine says of it.

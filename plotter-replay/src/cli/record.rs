@@ -89,7 +89,7 @@ impl Record {
                 over.store(true, Ordering::Relaxed);
             });
         }
-        let stopped = relay(host, controller, &recorder, &stop);
+        let stopped = relay(host, controller, self.baud, &recorder, &stop);
         drop(link);
         let recorded = recorder.finish().map_err(|error| format!("{}: {error}", self.out.display()))?;
         say(

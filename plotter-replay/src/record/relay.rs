@@ -13,18 +13,25 @@ use std::time::Instant;
 /// at 256000 baud. A full line needs no 25 600 wake-ups a second. The first byte after a silence goes on at
 /// once.
 const TOGETHER: Duration = Duration::from_micros(2_500);
-/// Where more than a record's bytes come each time, the line is full, and nobody waits for the next byte: so
-/// long is waited then. (A wake-up with its reading and sending costs some 30 us, whatever is read.)
+/// So long at most, where the line is full: nobody waits for the next byte then. (A wake-up with its reading
+/// and sending costs some 30 us, whatever is read.)
 const MOST_TOGETHER: Duration = Duration::from_millis(10);
-/// Bytes of a record.
-const RECORD_BYTES: usize = 64;
+/// The wait is this many times what the bytes just read take on the line, over [`LINE_PARTS`]: on a full line it
+/// grows with each read. A host that waits for the answer to each line is held up for a third of that line at
+/// most.
+const WAIT_PARTS: u64 = 4;
+/// See [`WAIT_PARTS`].
+const LINE_PARTS: u64 = 3;
+/// Bits of a byte on the line: a start bit, eight of data and a stop bit.
+const BITS: u64 = 10;
 /// A host that takes nothing for so long does not read: what the controller says is recorded all the same.
 const HOST_TAKES_WITHIN: Duration = Duration::from_secs(1);
 /// Bytes read at once.
 const READ_BYTES: usize = 4_096;
 /// Bytes sent at once: a line that takes some may not take many without waiting. A serial port of Linux has
-/// room for many times that whenever it says that it has any.
-const SEND_BYTES: usize = 256;
+/// room for several times that whenever it says that it has any. What a full line at 256000 baud brings within
+/// [`MOST_TOGETHER`], on a busy computer too, goes on in one piece.
+const SEND_BYTES: usize = 512;
 
 /// One end of a line: what comes from it and what goes to it. Both have time-outs of some tenths of a second,
 /// or the relay cannot be stopped.
@@ -74,8 +81,18 @@ impl fmt::Display for RelayStop {
 ///
 /// A byte is recorded before it goes on, which costs a copy in memory: so an answer never stands before what
 /// it answers. If the recording fails, the bytes go on without it.
+///
+/// `baud` is the line's speed, bits a second: by it a full line is known, whose bytes are read and passed on up to
+/// 10 ms later, many at a time. All others go on within 2.5 ms, or a third of the time that the bytes before
+/// them take on the line.
 #[must_use]
-pub fn relay(host: RelayEnd, controller: RelayEnd, recorder: &Recorder, stop: &Arc<AtomicBool>) -> RelayStop {
+pub fn relay(
+    host: RelayEnd,
+    controller: RelayEnd,
+    baud: u32,
+    recorder: &Recorder,
+    stop: &Arc<AtomicBool>,
+) -> RelayStop {
     let first: Mutex<Option<RelayStop>> = Mutex::new(None);
     let (host_name, controller_name) = (host.name, controller.name);
     let end = |result: Result<(), (String, io::Error)>| {
@@ -88,6 +105,7 @@ pub fn relay(host: RelayEnd, controller: RelayEnd, recorder: &Recorder, stop: &A
     };
     let up = Way {
         side: Side::Host,
+        baud,
         from: (host_name.clone(), host.reader),
         to: (controller_name.clone(), controller.writer),
         // What a controller does not take waits: a drawing must not have holes.
@@ -95,6 +113,7 @@ pub fn relay(host: RelayEnd, controller: RelayEnd, recorder: &Recorder, stop: &A
     };
     let down = Way {
         side: Side::Controller,
+        baud,
         from: (controller_name, controller.reader),
         to: (host_name, host.writer),
         drops_after: Some(HOST_TAKES_WITHIN),
@@ -109,6 +128,8 @@ pub fn relay(host: RelayEnd, controller: RelayEnd, recorder: &Recorder, stop: &A
 /// One direction.
 struct Way {
     side: Side,
+    /// Bits a second.
+    baud: u32,
     from: (String, Box<dyn Read + Send>),
     to: (String, Box<dyn Write + Send>),
     /// After how long bytes that are not taken are dropped.
@@ -121,7 +142,6 @@ impl Way {
         let (to, mut writer) = self.to;
         let mut buffer = [0; READ_BYTES];
         let mut dropped = 0_usize;
-        let mut together = TOGETHER;
         while !stop.load(Ordering::Relaxed) {
             let bytes = match reader.read(&mut buffer) {
                 Ok(0) => return Err((from, io::ErrorKind::UnexpectedEof.into())),
@@ -143,11 +163,18 @@ impl Way {
                 dropped = 0;
             }
             dropped = dropped.saturating_add(left);
-            together = if bytes.len() < RECORD_BYTES { TOGETHER } else { (together * 2).min(MOST_TOGETHER) };
-            std::thread::sleep(together);
+            std::thread::sleep(together(bytes.len(), self.baud));
         }
         Ok(())
     }
+}
+
+/// How long is waited for more, after so many bytes have been read.
+fn together(bytes: usize, baud: u32) -> Duration {
+    let bits_m = (bytes as u64).saturating_mul(BITS * 1_000_000);
+    let on_line_us = bits_m / u64::from(baud.max(1));
+    let wait_us = on_line_us.saturating_mul(WAIT_PARTS) / LINE_PARTS;
+    Duration::from_micros(wait_us).clamp(TOGETHER, MOST_TOGETHER)
 }
 
 fn passes(error: &io::Error) -> bool {
@@ -177,4 +204,35 @@ fn send(
         }
     }
     Ok(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The wait in the end, on a line that is so many percent full.
+    fn settled(baud: u32, percent: u128) -> Duration {
+        let (mut time, mut read, mut wait) = (Duration::ZERO, 0, TOGETHER);
+        for _ in 0..100 {
+            time += wait;
+            let came = time.as_micros() * u128::from(baud) * percent / 1_000_000_000;
+            wait = together(usize::try_from(came - read).unwrap(), baud);
+            read = came;
+        }
+        wait
+    }
+
+    #[test]
+    fn only_a_full_line_waits_long_whatever_its_speed() {
+        for baud in [9_600, 57_600, 115_200, 256_000, 1_000_000] {
+            assert_eq!(settled(baud, 95), MOST_TOGETHER, "{baud}");
+            assert!(settled(baud, 70) < Duration::from_millis(3), "{baud}");
+        }
+        // Twenty bytes at 9600 baud take 20.8 ms, an `ok` at 115200 a third of a millisecond.
+        assert_eq!(together(20, 9_600), MOST_TOGETHER);
+        assert_eq!(together(4, 115_200), TOGETHER);
+        // 36 bytes at 115200 baud take 3.125 ms.
+        assert_eq!(together(36, 115_200), Duration::from_micros(4_166));
+        assert_eq!(together(0, 0), TOGETHER);
+    }
 }

@@ -398,6 +398,7 @@ impl VirtualPlotter {
         };
         if homes {
             self.forget_planned();
+            self.slack = super::Slack::default();
             self.put_at(Point::ORIGIN);
         } else if lines.tongue == Tongue::MDraw || self.plan(&line) {
             self.all_drawn(now);

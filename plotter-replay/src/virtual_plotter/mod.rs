@@ -26,6 +26,7 @@ mod lines;
 mod linked;
 mod noted;
 mod settings;
+mod slack;
 
 pub use anomaly::{Anomaly, AnomalyKind};
 pub use leg::{Leg, TrackPoint};
@@ -42,6 +43,7 @@ use linked::{Linked, Speech};
 use plotter_motion::protocol::Order;
 use plotter_motion::protocol::digits::Reply;
 use plotter_motion::{Axis, Direction, Pen, PenMove, PlotOp, Point, StepPoint, toolpath::chords};
+use slack::Slack;
 
 /// A target and where the pulses had led when the controller said that it was reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,6 +84,7 @@ pub struct VirtualPlotter {
     pen_recorded: bool,
     pen_number: u8,
     counted: StepPoint,
+    slack: Slack,
     correction: StepPoint,
     // Where the present line begins.
     from: StepPoint,
@@ -129,6 +132,7 @@ impl VirtualPlotter {
             pen_recorded: false,
             pen_number: 0,
             counted: origin,
+            slack: Slack::default(),
             correction: StepPoint::default(),
             from: origin,
             next: None,
@@ -186,12 +190,13 @@ impl VirtualPlotter {
                 self.listen();
                 self.count(*axis, *sign);
             }
-            Event::Edge { axis, sign } if self.settings.counted_by == CountedBy::Steps => {
-                self.count(*axis, *sign);
-            }
-            Event::Edge { axis, sign } if self.lines.is_some() => {
-                self.count(*axis, *sign);
-                self.line_step();
+            Event::Edge { axis, sign }
+                if self.lines.is_some() || self.settings.counted_by == CountedBy::Steps =>
+            {
+                if self.slack.moves(self.settings.play, *axis, *sign) {
+                    self.count(*axis, *sign);
+                    self.line_step();
+                }
             }
             // Edges come again as pulse bytes; the others do not move the pen.
             Event::Edge { .. }

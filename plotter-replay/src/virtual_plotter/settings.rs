@@ -4,7 +4,7 @@ use crate::log::Header;
 use core::fmt;
 use core::time::Duration;
 use plotter_motion::gcode::PenConvention;
-use plotter_motion::kinematics::{BeltSigns, MotorPoint};
+use plotter_motion::kinematics::{Backlash, BeltSigns, MotorPoint};
 use plotter_motion::{Point, StepPoint};
 
 /// Scale, origin and limits of a virtual plotter.
@@ -19,6 +19,9 @@ pub struct PlotterSettings {
     /// Which way the two motors of a belt turn; `None` where each moves an axis. Counts are those of the
     /// motors either way, and a belt has one scale, that of x.
     pub belt: Option<BeltSigns>,
+    /// The play of each axis of a machine whose log has steps: those that take it up move no carriage. The log
+    /// begins with both axes driven towards minus, as homing leaves them.
+    pub play: Backlash,
     /// Records that tell the position of the motors.
     pub counted_by: CountedBy,
     /// Where the pen is when the log begins, mm; `None` for the origin of the counts, or where the machine
@@ -72,6 +75,7 @@ impl Default for PlotterSettings {
             y_mm_per_pulse: 0.025,
             p1: Point::ORIGIN,
             belt: None,
+            play: Backlash::default(),
             counted_by: CountedBy::Answers,
             begins_at: None,
             pen: PenConvention::Spindle,
@@ -97,8 +101,8 @@ pub struct SettingsError {
 }
 
 impl PlotterSettings {
-    /// The defaults with what a log's header says: `x_mm_per_pulse`, `y_mm_per_pulse`, `p1_x_mm`, `p1_y_mm`,
-    /// `begins_x_mm` and `begins_y_mm`, `resync_gap_ms`, `reached_tolerance_counts`, `belt_signs` and
+    /// The defaults with what a log's header says: `x_mm_per_pulse`, `y_mm_per_pulse`, `x_play_steps`,
+    /// `y_play_steps`, `p1_x_mm`, `p1_y_mm`, `begins_x_mm` and `begins_y_mm`, `resync_gap_ms`, `reached_tolerance_counts`, `belt_signs` and
     /// `protocol`, each optional.
     ///
     /// # Errors
@@ -145,6 +149,10 @@ impl PlotterSettings {
         let tolerance = f64::from(base.reached_tolerance_counts);
         let tolerance = number("reached_tolerance_counts", "0 to 100000 counts", counts, tolerance)?;
         let scale = "a length above 0 and up to 1000 mm";
+        let most_steps = |n: f64| (0.0..=f64::from(u16::MAX)).contains(&n);
+        let play = |key| number(key, "0 to 65535 steps", most_steps, 0.0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 65535, as checked")]
+        let play = Backlash { x_steps: play("x_play_steps")? as u16, y_steps: play("y_play_steps")? as u16 };
         Ok(Self {
             x_mm_per_pulse: number("x_mm_per_pulse", scale, length, scale_mm(base.x_mm_per_pulse))?,
             y_mm_per_pulse: number("y_mm_per_pulse", scale, length, scale_mm(base.y_mm_per_pulse))?,
@@ -153,6 +161,7 @@ impl PlotterSettings {
                 number("p1_y_mm", "a number within 1e6 mm", place, base.p1.y)?,
             ),
             belt,
+            play,
             counted_by,
             begins_at: if header.has("begins_x_mm") || header.has("begins_y_mm") {
                 Some(Point::new(
@@ -231,6 +240,7 @@ mod tests {
             r#"{"x_mm_per_pulse":0}"#,
             r#"{"p1_x_mm":"left"}"#,
             r#"{"resync_gap_ms":-1}"#,
+            r#"{"y_play_steps":65536}"#,
         ] {
             let error = PlotterSettings::from_header(&Header::from_json(bad).unwrap()).unwrap_err();
             assert!(bad.contains(error.key), "{error}");

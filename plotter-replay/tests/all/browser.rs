@@ -173,6 +173,80 @@ fn a_recording_plays_in_a_browser() {
     assert_eq!(browser.complaints, Vec::<String>::new());
 }
 
+/// The same session, silent for five seconds in its middle, and begun at a time of day.
+fn silent_recording(here: &Path) {
+    use plotter_replay::log;
+    let reader = log::open(&here.join("good.plog")).unwrap();
+    let header = reader.header().clone().with_number("began_unix_us", 1_795_629_973_994_029);
+    let mut records: Vec<_> = reader.map(Result::unwrap).collect();
+    let silence = Duration::from_secs(5);
+    let bytes =
+        |record: &log::Record| matches!(record.event, log::Event::Host(_) | log::Event::Controller(_));
+    let middle = records.len() / 2;
+    let after = (middle..).find(|&n| bytes(&records[n]) && records[n].time > records[n - 1].time).unwrap();
+    records[after..].iter_mut().for_each(|record| record.time += silence);
+    let mut writer = log::create(&here.join("silent.plog"), &header).unwrap();
+    records.iter().for_each(|record| writer.write(record).unwrap());
+    writer.finish().unwrap();
+}
+
+#[test]
+#[ignore = "needs a browser: .ci/browser"]
+fn a_recording_fits_every_screen_and_shows_nothing_that_nobody_knows() {
+    let here = tempfile::tempdir().unwrap();
+    set_up(here.path());
+    recording(here.path());
+    silent_recording(here.path());
+    let render = Command::new(PROGRAM)
+        .args(["render", "silent.plog", "--drawing", "drawing.hpgl", "--html", "page.html"])
+        .current_dir(here.path())
+        .output()
+        .unwrap();
+    assert_eq!(render.status.code(), Some(0), "{render:?}");
+    let mut browser = Browser::start();
+    let address = format!("file://{}", here.path().join("page.html").display());
+    for [width, height] in [[320, 640], [390, 844], [860, 600], [1280, 800]] {
+        browser.screen(width, height, width < 500);
+        browser.open(&address);
+        browser.wait_for("document.body.dataset.ready === 'yes'");
+        browser.screenshot(&format!("recording-{width}"));
+        assert_eq!(browser.eval("document.documentElement.scrollWidth"), json!(width), "wider than {width}");
+        // The player is at hand beside the sheet, and the page's last words are not under it.
+        let [_, top, _, bottom] = browser.place(".player");
+        assert!(top >= 0.0 && bottom <= f64::from(height) + 0.5, "{width}: the player at {top} to {bottom}");
+        browser.eval("scrollTo(0, 1e9)");
+        browser.painted();
+        let seen = browser.eval(
+            "(() => { const box = document.getElementById('exactness').getBoundingClientRect(); \
+             const at = document.elementFromPoint(box.left + 20, box.bottom - 4); \
+             return box.bottom <= innerHeight && at && at.id; })()",
+        );
+        assert_eq!(seen, json!("exactness"), "{width}: the end of the page is hidden");
+    }
+    // Times of day are for people, and all others are on the recording's own clock.
+    assert_eq!(browser.value("began"), "2026-11-25 18:06:13 UTC");
+    assert_eq!(number(&browser.text("#clock")), number(&format!("{:.3}", number(&browser.value("time")))));
+    let row = "[...document.querySelectorAll('#gaps tr[tabindex]')].find((row) => Number(row.children[1].textContent) >= 5)";
+    browser.eval(&format!("{row}.click()"));
+    let began = number(browser.eval(&format!("{row}.children[0].textContent")).as_str().unwrap());
+    assert!((number(&browser.value("time")) - began).abs() < 1e-5, "{began}");
+    // In the silence the pen stands, and what nobody knows then is not drawn.
+    let clock = browser.text("#clock");
+    let end = number(clock.split('/').nth(1).unwrap());
+    let at = |browser: &mut Browser, time: f64| {
+        let value = (time / end * 10_000.0).round();
+        browser.eval(&format!(
+            "(() => {{ const slider = document.getElementById('time'); slider.value = {value}; \
+             slider.dispatchEvent(new Event('input')); }})()"
+        ));
+        (browser.value("position x"), browser.value("position y"))
+    };
+    let (early, late) = (at(&mut browser, began + 1.0), at(&mut browser, began + 4.0));
+    assert_eq!(early, late, "the pen drifts while the line is silent");
+    browser.screenshot("recording-silent");
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
 #[test]
 #[ignore = "needs a browser: .ci/browser"]
 fn a_long_recording_is_a_small_page_that_opens_at_once() {

@@ -17,10 +17,14 @@ use plotter_motion::plant::{Bench, BenchSettings};
 use plotter_motion::{
     LimitSwitches, Machine, Pen, PenMove, SafetyGate, StepPoint,
     config::{ControllerChoice, MachineKind, TransmissionConfig},
+    kinematics::Backlash,
 };
+use plotter_replay::compare::Ways;
 use plotter_replay::log::{self, Event, Header, Record, Writer};
 use plotter_replay::transport::Faults;
-use plotter_replay::{AnyController, BenchRecorder, Player, PlayerSettings, golden};
+use plotter_replay::{
+    AnyController, BenchRecorder, Player, PlayerSettings, PlotterSettings, VirtualPlotter, golden,
+};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -56,11 +60,19 @@ fn sessions(name: &str, machine: &Machine) -> Vec<(String, Header, Machine)> {
     let header =
         Header::new().with_number("baud", u64::from(machine.config().serial.baud)).with_text("machine", name);
     match machine.kind() {
-        MachineKind::Steppers => ["mdraw", "grbl"]
-            .map(|protocol| {
+        MachineKind::Steppers => {
+            let [x, y] = [machine.config().x, machine.config().y].map(|axis| 1.0 / axis.stepper.steps_per_mm);
+            let mut header = header.with_decimal("x_mm_per_pulse", x).with_decimal("y_mm_per_pulse", y);
+            let play = Backlash::of(machine);
+            if play != Backlash::default() {
+                header = header.with_number("x_play_steps", play.x_steps.into());
+                header = header.with_number("y_play_steps", play.y_steps.into());
+            }
+            let session = |protocol| {
                 (format!("{name}.{protocol}"), header.clone().with_text("protocol", protocol), *machine)
-            })
-            .to_vec(),
+            };
+            ["mdraw", "grbl"].map(session).to_vec()
+        }
         _ => [("published", ControllerChoice::Published), ("contouring", ControllerChoice::Contouring)]
             .map(|(controller, choice)| {
                 let mut config = *machine.config();
@@ -148,8 +160,27 @@ fn every_preset_replays_its_golden_logs() {
                 std::fs::write(&path, record(&header, &machine)).unwrap();
             }
             golden::assert_replays(&path, || AnyController::for_header(&header, Some(&machine)).unwrap());
+            if machine.kind() == MachineKind::Steppers {
+                assert_is_drawn(&path, &machine);
+            }
         }
     }
+}
+
+/// A log of lines with steps is drawn as what was meant: each place is met, and nothing lies beside its line.
+fn assert_is_drawn(path: &Path, machine: &Machine) {
+    let mut reader = log::open(path).unwrap();
+    let mut plotter = VirtualPlotter::new(PlotterSettings::from_header(reader.header()).unwrap());
+    reader.by_ref().for_each(|record| plotter.push(&record.unwrap()));
+    plotter.finish();
+    let [targets, reached] = [plotter.target_count(), plotter.reached_count()];
+    assert_eq!([targets, reached], [4; 2], "{}", path.display());
+    // A place is met to half a step, and a corner may be left by as much as the planner rounds it.
+    let config = machine.config();
+    let steps_mm = 2.0 / config.x.stepper.steps_per_mm.min(config.y.stepper.steps_per_mm);
+    let most_mm = steps_mm + config.planner.path_tolerance_mm;
+    let error = plotter.contour_error(Ways::Drawn);
+    assert!(error.max_mm <= most_mm, "{}: {error:?}, at most {most_mm} mm", path.display());
 }
 
 /// The same tick mark by frames, over a line that damages two bytes in a hundred: what was lost is sent

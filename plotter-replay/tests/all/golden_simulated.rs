@@ -92,11 +92,27 @@ fn sessions() -> Vec<(&'static str, Machine, Spoken, Header, &'static str, Talk)
         ("SP,1,150\rQM\rHM,1000\rSM,10,0,0\rSM,10,0,0\rQS\r", "0,0"),
     ]);
     let ebb_header = header(&steppers, "ebb", 0.05).with_text("belt_signs", "tracking-equations");
+    let marlin = talk(&[
+        ("", "(simulated)\n"),
+        ("M115\n", "ok\n"),
+        ("G28\n", "ok\n"),
+        ("M3\nG1 X2 Y1 F600\nG1 X4\nM5\nM400\nM114\n", "Count"),
+        ("N1 G0 X1*99\n", "Resend: 1\n"),
+        ("M110 N0\n", "ok\n"),
+    ]);
+    let hpgl = talk(&[
+        ("IN;SP1;PU80,40;PD160,40,160,80;PU;OA;", "160,80,0\r"),
+        ("XX;OE;", "1\r"),
+        ("PU0,0;SP0;OS;", "\r"),
+        ("\u{1b}.E", "\r"),
+    ]);
     let script = "1.55 hold x\n1.6 let x\n1.65 lose y 16\n";
     vec![
         ("ebb", steppers, Spoken::Ebb { is_mixed: true }, ebb_header, "0.2 stop\n0.21 free\n", ebb),
         ("grbl", steppers, Spoken::Grbl, header(&steppers, "grbl", 0.05), script, grbl),
         ("mdraw", steppers, Spoken::MDraw, header(&steppers, "mdraw", 0.05), "", mdraw),
+        ("marlin", steppers, Spoken::Marlin, header(&steppers, "marlin", 0.05), "", marlin),
+        ("hpgl", steppers, Spoken::Hpgl, header(&steppers, "hpgl", 0.05), "", hpgl),
         ("counts", board, Spoken::Digits, board_header, "", digits),
     ]
 }

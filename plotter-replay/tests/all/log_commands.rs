@@ -334,8 +334,34 @@ fn memory_does_not_grow_with_the_log() {
             .unwrap();
         String::from_utf8(output.stdout).unwrap().trim().parse().unwrap()
     };
+    // A host of Grbl, and its machine: lines in groups of 64 bytes, each answered, a report now and then.
+    let make_text = |name: &str, events: u64| {
+        let file = std::io::BufWriter::new(std::fs::File::create(here.join(name)).unwrap());
+        let header = Header::new().with_number("baud", 115_200).with_text("protocol", "grbl");
+        let mut writer = Writer::new(file, &header).unwrap();
+        let (mut time, mut done, mut lines) = (0, 0, 0_u64);
+        let mut text = Vec::new();
+        while done < events {
+            let x = lines * 37 % 100_000;
+            writeln!(text, "G1 X{}.{:03} Y{}.000", x / 1_000, x % 1_000, lines % 90).unwrap();
+            lines += 1;
+            if text.len() < 64 {
+                continue;
+            }
+            for (group, answer) in text.chunks(64).zip([&b"ok\r\nok\r\nok\r\n"[..], b"ok\r\n"]) {
+                time += 6_000;
+                writer.write(&host(time, group)).unwrap();
+                writer.write(&said(time + 500, answer)).unwrap();
+                done += (group.len() + answer.len()) as u64;
+            }
+            text.clear();
+        }
+        writer.finish().unwrap();
+    };
     make("short.plog", 5_000_000);
     make("long.plog", 100_000_000);
+    make_text("short-text.plog", 5_000_000);
+    make_text("long-text.plog", 100_000_000);
     let mut line = std::io::BufWriter::new(std::fs::File::create(here.join("line.plog")).unwrap());
     line.write_all(b"plotter-log 1 {}\n").unwrap();
     for _ in 0..1_000 {
@@ -352,6 +378,14 @@ fn memory_does_not_grow_with_the_log() {
             "{command:?}: {short} KiB for 5 million events, {long} for 100 million, {line} for a line of 1 GB"
         );
         assert!(short.abs_diff(long) < 2_048 && long < 32_768 && line < 32_768);
+    }
+    for command in [&["info"][..], &["export", "--to", "csv"], &["render", "--html", "page.html"]] {
+        let [short, long] =
+            ["short-text.plog", "long-text.plog"].map(|log| peak_kib(&[command, &[log]].concat()));
+        println!("{command:?} of lines: {short} KiB for 5 million events, {long} for 100 million");
+        // A page keeps as much of the way as it has room for.
+        let is_page = command[0] == "render";
+        assert!(long < 65_536 && (is_page || short.abs_diff(long) < 2_048));
     }
     let unlike = peak_kib(&["compare", "short.plog", "long.plog"]);
     println!("two logs of which one is twenty times as long: {unlike} KiB");
@@ -444,6 +478,33 @@ fn a_log_of_digits_that_begins_away_from_the_origin_begins_there() {
     let info = run(&["info", "away.plog", "--origin", "0,0"], here);
     assert!(info.out.contains("as is said") && !info.out.contains("anomalies: 0"), "{}", info.out);
     assert_eq!(run(&["info", "away.plog", "--origin", "0"], here).status, 2);
+}
+
+#[test]
+fn an_import_finds_out_which_protocol_it_is_of() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let dump = |said: &[(&str, &str)]| {
+        let bytes = said.iter().flat_map(|(who, text)| text.bytes().map(move |byte| (who, byte)));
+        let lines = bytes.enumerate().map(|(n, (who, byte))| format!("(5.{n:06}) {who} {byte:02X}\n"));
+        std::fs::write(here.join("dump.txt"), lines.collect::<String>()).unwrap();
+    };
+    let import =
+        |more: &[&str]| run(&[&["import", "dump.txt", "-o", "s.plog", "--force"], more].concat(), here);
+    dump(&[("host", "G1 X4 F600\n"), ("plotter", "ok\r\n"), ("host", "G4 P0\n"), ("plotter", "ok\r\n")]);
+    let ran = import(&[]);
+    assert!(ran.status == 0 && ran.out.contains("protocol: grbl, by what is said"), "{}{}", ran.out, ran.err);
+    let info = run(&["info", "s.plog"], here);
+    assert!(info.out.contains("lines: 2 sent, 2 taken by the machine, 0 refused"), "{}", info.out);
+    dump(&[("host", "HELLO\n"), ("plotter", "who is there\n")]);
+    let ran = import(&[]);
+    assert!(ran.status == 0 && ran.out.contains("none that is known here"), "{}{}", ran.out, ran.err);
+    for command in ["info", "render", "check"] {
+        assert_eq!(run(&[command, "s.plog"], here).status, 2, "{command}");
+    }
+    assert!(run(&["export", "s.plog", "--to", "text"], here).out.contains("# protocol: \"unknown\""));
+    let said = import(&["--protocol", "mdraw"]);
+    assert!(said.status == 0 && !said.out.contains("protocol"), "{}", said.out);
 }
 
 #[test]

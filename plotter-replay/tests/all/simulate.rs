@@ -129,6 +129,7 @@ fn drawing() -> Vec<String> {
             format!("Y{side}"),
         ]);
     }
+    lines.extend(["M5", "G0 X40 Y20", "M3", "G2 X40 Y20 I-10 J0", "G3 X20 Y20 R10"].map(String::from));
     lines.extend(["M5", "G0 X0 Y0"].map(String::from));
     lines
 }
@@ -181,6 +182,17 @@ fn a_sender_that_counts_characters_draws_the_steps_of_the_plan_on_a_pseudo_termi
     assert!(made == wanted, "{} steps, {} planned", made.len(), wanted.len());
     let (status, said) = run(&["check", "machine.plog"], here);
     assert_eq!(status, Some(0), "{said}");
+    // What its log is decoded as: all places are met, arcs among them, and nothing lies beside its line.
+    let (status, info) = run(&["info", "machine.plog"], here);
+    assert_eq!(status, Some(0), "{info}");
+    let numbers = |begins: &str| -> Vec<f64> {
+        let line = info.lines().find_map(|line| line.strip_prefix(begins)).unwrap();
+        line.split([' ', ',']).filter_map(|word| word.parse().ok()).collect()
+    };
+    let targets = numbers("targets: ");
+    assert!(targets[0] > 150.0 && targets[0] == targets[1], "{info}");
+    assert!(numbers("contour error: ")[1] < 0.05, "{info}"); // mm: four steps
+    assert!(info.contains("anomalies: 0"), "{info}");
 }
 
 const STEPPERS: &str = "schema = 1\nname = \"small\"\ndrive = \"stepper\"\n[area]\nwidth_mm = 60.0\nheight_mm = 40.0\n\
@@ -191,6 +203,20 @@ const STEPPERS: &str = "schema = 1\nname = \"small\"\ndrive = \"stepper\"\n[area
 fn small(arguments: &[&str], here: &Path) -> Simulated {
     std::fs::write(here.join("small.toml"), STEPPERS).unwrap();
     Simulated::new(&[&["small.toml", "-o", "machine.plog"], arguments].concat(), here)
+}
+
+/// Waits until the machine says to stand at this place, whatever else it says meanwhile.
+fn rests_at(port: &mut (impl Read + Write + ?Sized), place: &str) {
+    let began = Instant::now();
+    loop {
+        port.write_all(b"?").unwrap();
+        let heard = until(port, ">");
+        if heard.contains(&format!("<Idle|MPos:{place}")) {
+            return;
+        }
+        assert!(began.elapsed() < PATIENCE, "it is not at {place}: {heard}");
+        std::thread::sleep(Duration::from_millis(100));
+    }
 }
 
 /// Its log is whole, and its controller does the same again.
@@ -255,40 +281,138 @@ fn a_script_stops_presses_and_lays_paper() {
 }
 
 #[test]
-fn floods_noise_halves_of_lines_and_a_port_that_is_closed_are_as_with_grbl_and_the_log_is_kept() {
+fn a_simulation_that_is_killed_keeps_its_log_but_for_the_last_half_second() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let simulated = small(&["--speed", "4"], here);
+    let mut port = simulated.open();
+    until(&mut *port, "Grbl 1.1");
+    port.write_all(b"G1 X10 F600\n").unwrap();
+    rests_at(&mut *port, "10.00");
+    std::thread::sleep(Duration::from_millis(700));
+    drop(simulated); // by SIGKILL
+    // Whoever has the port open is told so.
+    let began = Instant::now();
+    while port.write_all(b"?").is_ok() {
+        assert!(began.elapsed() < PATIENCE, "the port of a machine that is gone still takes bytes");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let info = assert_runs_again(here);
+    assert!(info.contains("nothing lost") && info.contains("ends at (10.00"), "{info}");
+}
+
+#[test]
+fn a_port_that_is_closed_and_opened_again_finds_the_machine_as_it_was() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
     let simulated = small(&["--speed", "4"], here);
     {
-        // Half a line; the program goes away, another one ends it.
+        let mut port = simulated.open();
+        until(&mut *port, "Grbl 1.1");
+        port.write_all(b"G91\nG1 X10 F600\n").unwrap();
+        until(&mut *port, "ok\r\nok");
+    }
+    // It goes on while nobody listens, and is not reset: a pseudo terminal has no DTR, as Grbl on USB of its own.
+    std::thread::sleep(Duration::from_millis(500));
+    let mut port = simulated.open();
+    port.write_all(b"G1 X5\n").unwrap();
+    assert!(!until(&mut *port, "ok").contains("Grbl"));
+    rests_at(&mut *port, "15.00");
+    assert_eq!(simulated.end().0, Some(0));
+    assert_runs_again(here);
+}
+
+#[test]
+fn half_a_line_waits_for_its_other_half_whoever_sends_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let simulated = small(&["--speed", "4"], here);
+    {
         let mut port = simulated.open();
         until(&mut *port, "Grbl 1.1");
         port.write_all(b"G1 X1").unwrap();
     }
     let mut port = simulated.open();
-    port.write_all(b"0 F600\nG4 P0\n").unwrap();
-    until(&mut *port, "ok\r\nok");
+    std::thread::sleep(Duration::from_millis(500));
     port.write_all(b"?").unwrap();
-    assert!(until(&mut *port, ">").contains("MPos:10.00"));
-    // Noise: lines that are none are refused, and nothing else happens.
+    assert!(until(&mut *port, ">").contains("<Idle|MPos:0.000")); // nothing moves by half a line
+    port.write_all(b"0 F600\n").unwrap();
+    rests_at(&mut *port, "10.00");
+    assert_eq!(simulated.end().0, Some(0));
+    let info = assert_runs_again(here);
+    assert!(info.contains("lines: 1 sent, 1 taken by the machine, 0 refused"), "{info}");
+}
+
+#[test]
+fn noise_is_refused_line_by_line_and_moves_nothing() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let simulated = small(&["--speed", "4"], here);
+    let mut port = simulated.open();
+    until(&mut *port, "Grbl 1.1");
+    // Unprintable bytes are passed over, as Grbl does; what is left are two lines that are none, and one that is
+    // too long.
     port.write_all(b"\x00\x07G1 Q\x7f9\nGG\n").unwrap();
     until(&mut *port, "error:");
-    std::thread::sleep(Duration::from_millis(300));
-    // A flood without waiting: what finds no room is refused, line by line, and the rest is drawn.
+    port.write_all(&[&[b'X'; 100][..], b"\n"].concat()).unwrap();
+    until(&mut *port, "error:11");
+    // Every byte but those of its own orders (reset, jog cancel, questions), in lines.
+    let all: Vec<u8> =
+        (0..=255).filter(|byte| !matches!(byte, 0x18 | 0x85 | b'?' | b'!' | b'~' | b'$')).collect();
+    for piece in all.chunks(20) {
+        port.write_all(&[piece, b"\n"].concat()).unwrap();
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    port.write_all(b"G1 X10 F600\n").unwrap();
+    rests_at(&mut *port, "10.00");
+    assert_eq!(simulated.end().0, Some(0));
+    let info = assert_runs_again(here);
+    assert!(info.contains("nothing lost") && info.contains("refused: error 11"), "{info}");
+}
+
+#[test]
+fn a_flood_without_waiting_is_refused_by_whole_lines_and_the_rest_is_drawn() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let simulated = small(&["--speed", "4"], here);
+    let mut port = simulated.open();
+    until(&mut *port, "Grbl 1.1");
+    port.write_all(b"F600\n").unwrap();
+    until(&mut *port, "ok");
     let flood: String = (0..400).map(|n| format!("G1 X{} Y{}\n", 10 + n % 2, n % 3)).collect();
     port.write_all(flood.as_bytes()).unwrap();
     let heard = until(&mut *port, "error:11");
     assert!(heard.contains("ok"), "{heard}");
-    // Two senders at once: their bytes mingle, as on a cable.
-    let mut other = std::fs::OpenOptions::new().write(true).open(&simulated.port).unwrap();
-    other.write_all(b"?").unwrap();
-    until(&mut *port, ">");
-    drop((other, port));
-    // Killed: all but the last half second is in the log.
+    // It does what it is told once what was taken before is drawn.
     std::thread::sleep(Duration::from_millis(500));
-    drop(simulated);
+    port.write_all(b"G1 X20 Y5\n").unwrap();
+    rests_at(&mut *port, "20.00");
+    let (status, said) = simulated.end();
+    assert_eq!(status, Some(0), "{said}");
     let info = assert_runs_again(here);
     assert!(info.contains("nothing lost") && info.contains("refused: error 11"), "{info}");
+}
+
+#[test]
+fn two_senders_at_once_are_one_line_of_bytes_as_on_a_cable() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let simulated = small(&["--speed", "4"], here);
+    let mut port = simulated.open();
+    until(&mut *port, "Grbl 1.1");
+    // Half a line of each is one line.
+    let mut other = std::fs::OpenOptions::new().write(true).open(&simulated.port).unwrap();
+    other.write_all(b"G1 X1").unwrap();
+    std::thread::sleep(Duration::from_millis(200));
+    port.write_all(b"5 F600\n").unwrap();
+    until(&mut *port, "ok");
+    rests_at(&mut *port, "15.00");
+    other.write_all(b"?").unwrap(); // each hears what was asked by either
+    until(&mut *port, ">");
+    drop((other, port));
+    assert_eq!(simulated.end().0, Some(0));
+    let info = assert_runs_again(here);
+    assert!(info.contains("lines: 1 sent, 1 taken by the machine, 0 refused"), "{info}");
 }
 
 #[test]
