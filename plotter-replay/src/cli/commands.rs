@@ -8,6 +8,7 @@ use super::info::Info;
 use super::record::Record;
 use super::render::Render;
 use super::replay::Replay;
+use crate::import::protocol_of;
 use crate::log::{self, Damage, FileReader, Header, Summary};
 use clap::{ArgMatches, FromArgMatches as _, Subcommand};
 use std::io::{Read as _, Write};
@@ -164,8 +165,28 @@ pub(crate) fn say_first<T: ToString>(out: &mut impl Write, list: &[T], count: u6
     }
 }
 
+/// Bytes of each side by which a protocol is told, some hundred lines, and records that are read for them: one a
+/// byte.
+const TELLING_BYTES: usize = 4_096;
+const TELLING_RECORDS: usize = 2 * TELLING_BYTES;
+
+/// A log. Where nobody has said of which protocol it is, as while it was recorded, its beginning tells.
 pub(crate) fn open(path: &Path) -> Result<FileReader, String> {
-    log::open(path).map_err(|error| format!("{}: {error}", path.display()))
+    let open = || log::open(path).map_err(|error| format!("{}: {error}", path.display()));
+    let reader = open()?;
+    if reader.header().has("protocol") {
+        return Ok(reader);
+    }
+    let (mut host, mut machine) = (Vec::new(), Vec::new());
+    for record in open()?.filter_map(Result::ok).take(TELLING_RECORDS) {
+        match record.event {
+            log::Event::Host(bytes) if host.len() < TELLING_BYTES => host.extend(bytes),
+            log::Event::Controller(bytes) if machine.len() < TELLING_BYTES => machine.extend(bytes),
+            _ => {}
+        }
+    }
+    let header = reader.header().clone().with_text("protocol", protocol_of(&host, &machine));
+    Ok(reader.with_header(header))
 }
 
 /// Everything in a log, one record after the other.

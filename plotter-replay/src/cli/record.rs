@@ -30,9 +30,9 @@ pub(crate) struct Record {
     /// Stop after so many seconds [default: Ctrl-C].
     #[arg(long = "for", value_name = "S", value_parser = seconds)]
     lasts: Option<Duration>,
-    /// What the line speaks, for the log's header.
-    #[arg(long, value_name = "NAME", default_value = "digits")]
-    protocol: String,
+    /// What the line speaks, for the log's header [default: told by what was said whenever the log is read]
+    #[arg(long, value_name = "NAME")]
+    protocol: Option<String>,
     /// What the machine is called, for the log's header.
     #[arg(long, value_name = "NAME")]
     machine: Option<String>,
@@ -117,9 +117,11 @@ impl Record {
     fn header(&self, port: &str) -> crate::log::Header {
         let mut header = crate::log::Header::new()
             .with_number("baud", u64::from(self.baud))
-            .with_text("protocol", &self.protocol)
             .with_text("clock", "monotonic")
             .with_text("port", port);
+        if let Some(protocol) = &self.protocol {
+            header = header.with_text("protocol", protocol);
+        }
         if let Some(machine) = &self.machine {
             header = header.with_text("machine", machine);
         }

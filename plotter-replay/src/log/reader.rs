@@ -167,6 +167,12 @@ impl<R: BufRead> Reader<R> {
         &self.header
     }
 
+    /// The same log, of which something else is said.
+    #[must_use]
+    pub fn with_header(self, header: Header) -> Self {
+        Self { header, ..self }
+    }
+
     /// What was read and lost so far; of the whole log once the iterator is at its end.
     #[must_use]
     pub fn summary(&self) -> Summary {

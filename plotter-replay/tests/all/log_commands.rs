@@ -528,3 +528,31 @@ fn an_import_that_fails_leaves_no_log_and_the_old_one_as_it_was() {
     }
     assert_eq!(std::fs::read_to_string(here.join("old.plog")).unwrap(), "precious");
 }
+
+#[test]
+fn a_log_of_which_nobody_said_the_protocol_is_told_by_its_beginning() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let grbl = [&b"\r\nGrbl 1.1h ['$' for help]\r\n"[..], b"G1 X1 F600\n", b"ok\r\n"];
+    let other = [&b"hello\r\n"[..], b"QUIT\r\n", b"goodbye\r\n"];
+    for ([greeting, order, answer], told) in [(grbl, Some("lines: 1 sent, 1 taken")), (other, None)] {
+        write(&here.join("s.plog"), &[said(0, greeting), host(900, order), said(2_000, answer)]);
+        let ran = run(&["info", "s.plog"], here);
+        match told {
+            Some(told) => assert!(ran.status == 0 && ran.out.contains(told), "{}{}", ran.out, ran.err),
+            // Never taken for digits.
+            None => {
+                assert_eq!(ran.status, 2, "{}{}", ran.out, ran.err);
+                assert!(
+                    ran.err.contains("protocol") && !ran.out.contains("targets"),
+                    "{}{}",
+                    ran.out,
+                    ran.err
+                );
+            }
+        }
+    }
+    write(&here.join("s.plog"), &session());
+    let ran = run(&["info", "s.plog"], here);
+    assert!(ran.status == 0 && ran.out.contains("targets: 2 sent, 2 reached"), "{}{}", ran.out, ran.err);
+}
