@@ -9,13 +9,15 @@
 //! turns round in them, and never knows that it is done.
 //!
 //! With `--from` the windows come from a camera, or from a folder with pictures, and the moves are printed
-//! for the machine.
+//! for the machine. With `--live` they are made: a machine on a port is led from place to place, and the next
+//! window is taken when it says that it is there.
 //!
 //! ```text
 //! cargo run --release --example follow -- --svg follow.svg
 //! cargo run --release --example follow -- drawing.png --table-error 1 --animation follow.gif
 //! cargo run --release --example follow -- drawing.png --method published --hand left --report follow.json
 //! cargo run --release --features camera --example follow -- --from /dev/video0 --correction camera.json --moves moves.gcode
+//! cargo run --release --features live --example follow -- drawing.png --live tcp:127.0.0.1:7000 --protocol grbl
 //! ```
 
 use clap::Parser as _;

@@ -1,6 +1,7 @@
 //! The command line of `follow`.
 
 use super::course::follow;
+use super::led::Led;
 use crate::shared::{ExitStatus, Telling, run};
 use clap::{Parser, ValueEnum};
 use plotter_vector::follow::{CameraSettings, Lens, MappingFollower};
@@ -16,7 +17,8 @@ pub(super) const WINDOWS: u64 = 2_000_000;
 /// Fewest pixels of a window a side.
 const LEAST_SIDE_PX: f64 = MappingFollower::LEAST_WINDOW_PX as f64;
 
-/// Follows the lines of a picture with a simulated camera on a simulated table, or what a real camera sees.
+/// Follows the lines of a picture with a simulated camera on a simulated table, or what a real camera sees; on
+/// paper, or with a real machine.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -27,9 +29,12 @@ const LEAST_SIDE_PX: f64 = MappingFollower::LEAST_WINDOW_PX as f64;
                   plotter follow drawing.png --table-error 1 --play 3 --animation follow.gif\n  \
                   plotter follow drawing.png --camera blur=2,noise=8,rim=0.5,barrel=0.03,size=240 --correction camera.json\n  \
                   plotter follow drawing.png --method published --hand left --report follow.json\n  \
-                  plotter follow --from pictures/ --moves moves.csv\n\n\
+                  plotter follow --from pictures/ --moves moves.csv\n  \
+                  plotter follow --live /dev/ttyUSB0 --machine mine.toml --from /dev/video0 --draw\n  \
+                  plotter follow drawing.png --live tcp:127.0.0.1:7000 --protocol grbl\n\n\
                   Exit status: 0 followed to the end, or the published method, which never ends by itself, until it was stopped; \
-                  1 no line, lost on the way, the pictures of --from are at their end, a camera that gives none, or a file that cannot be read; 2 wrong options. \
+                  1 no line, lost on the way, the pictures of --from are at their end, a camera that gives none, a machine that does not answer or was \
+                  stopped, or a file that cannot be read; 2 wrong options. \
                   Files are written as far as it came.\n\n\
                   In a checkout of the project, `cargo run --release --example follow --` stands for `plotter follow`."
 )]
@@ -87,9 +92,32 @@ pub struct FollowCommand {
     /// With --from: side of the square cut out of each picture's middle, px [default: the shorter side]
     #[arg(long, value_name = "PX", requires = "from", value_parser = clap::value_parser!(u32).range(16..=4096))]
     pub(super) window: Option<u32>,
-    /// With --from a camera: pause after each move, until the machine stands still, ms
+    /// With --from a camera: pause after each move, until the machine stands still, ms; with --live after it
+    /// says to be there
     #[arg(long, value_name = "MS", default_value = "100", value_parser = clap::value_parser!(u32).range(0..=60_000))]
     pub(super) settle_ms: u32,
+    /// Leads a real machine, whose tool is lifted; the next window is taken when it says that it is there. A
+    /// serial port, tcp:HOST:PORT, or `simulated` for a machine in this program (built with --features live).
+    /// Windows are those of --from, whose folder is then waited for: 0.png, 1.png, .. as the moves are
+    /// numbered; without it they are cut out of the picture where the machine says to be. Ctrl-C stops it
+    #[arg(long, value_name = "PORT", conflicts_with_all = ["table_error", "play"])]
+    pub(super) live: Option<String>,
+    /// With --live: then draws, or cuts, the lines that were followed, half the kerf of the machine's file
+    /// beside them
+    #[arg(long, requires = "live")]
+    pub(super) draw: bool,
+    /// With --live: what the machine speaks: grbl, marlin, mdraw, hpgl, ebb, eggbot [default: found out]
+    #[arg(long, value_name = "LANGUAGE", default_value = "auto", hide_default_value = true)]
+    pub(super) protocol: String,
+    /// With --live simulated: seconds of the machine in one of ours, at most
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = speed)]
+    pub(super) speed: f64,
+    /// With --live: the recording of the machine's line
+    #[arg(long, value_name = "F.plog", default_value = "follow.plog")]
+    pub(super) log: PathBuf,
+    /// With --live and --from a folder: how long each picture is waited for, s
+    #[arg(long, value_name = "S", default_value = "60", value_parser = clap::value_parser!(u32).range(1..=86_400))]
+    pub(super) picture_s: u32,
     /// Writes the moves as they come: a table as .csv, otherwise G-code [default with --from: a table on the
     /// standard output]
     #[arg(long, value_name = "F.csv|F.gcode")]
@@ -131,6 +159,10 @@ fn number(text: &str, range: std::ops::RangeInclusive<f64>) -> Result<f64, Strin
 
 fn error_px(text: &str) -> Result<f64, String> {
     number(text, 0.0..=30.0)
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    number(text, 0.01..=1e6)
 }
 
 fn pixel_mm(text: &str) -> Result<f64, String> {
@@ -180,6 +212,10 @@ impl FollowCommand {
         // The library of options would let it pass beside an image.
         if arguments.window.is_some() && arguments.from.is_none() {
             eprintln!("follow: --window is for --from; the simulated camera's is --camera size=PX");
+            return ExitStatus::WrongUse.into();
+        }
+        if let Some(why) = arguments.live.as_ref().and_then(|_| Led::misused(&arguments)) {
+            eprintln!("follow: {why}");
             return ExitStatus::WrongUse.into();
         }
         if arguments.hand.is_some() && arguments.method == Method::Ours {

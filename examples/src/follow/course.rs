@@ -4,7 +4,9 @@ use super::command::{FollowCommand, PUBLISHED_WINDOWS};
 use super::ended::{Ended, Over};
 use super::files::write_files;
 use super::follower::{Eyes, Follower};
+use super::leader::Leader;
 use super::sheet::{MM_PER_PX, Sheet, sheet};
+use super::turned::turned;
 use crate::follow::{FollowFrame, FollowGif, FollowMachine, FollowOutcome, MovesFile, WindowSource};
 use crate::shared::{WorkShown, at, read_file};
 use plotter_motion::{Machine, config::MachineKind};
@@ -16,6 +18,7 @@ use plotter_vector::{
     },
 };
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// The machine, where no other is given.
 const MACHINE: &str = include_str!("../../machines/plasma-follower.toml");
@@ -29,6 +32,7 @@ pub(super) fn follow(arguments: &FollowCommand) -> Result<(), String> {
     let sheet = if arguments.from.is_none() { Some(sheet(arguments, &name)?) } else { None };
     let mut course = Course::new(arguments, sheet.as_ref())?;
     let end = course.run()?;
+    let end = course.draw(end);
     let Course {
         machine, table, follower, moves_file, film, frames, windows, moves, lost, window_px, ..
     } = course;
@@ -76,6 +80,14 @@ pub(super) fn follow(arguments: &FollowCommand) -> Result<(), String> {
 struct Course<'a> {
     arguments: &'a FollowCommand,
     machine: FollowMachine,
+    /// The real machine, where one is led.
+    leader: Option<Leader>,
+    /// Where it says that its camera looks.
+    told: Option<PxPoint>,
+    /// By how much its camera is turned, degrees, and the lens' correction, which comes before a window is
+    /// turned back.
+    turn_deg: f64,
+    turned_lens: Option<Correction>,
     eyes: Eyes,
     table: SimulatedTable,
     follower: Follower,
@@ -96,15 +108,31 @@ impl<'a> Course<'a> {
         let size = sheet.map(|sheet| [sheet.picture.width(), sheet.picture.height()].map(f64::from));
         let found_mm = sheet.map_or(MM_PER_PX, |sheet| sheet.mm_per_px);
         let mm_per_px = arguments.mm_per_px.unwrap_or(found_mm);
-        let machine = FollowMachine::new(&machine(arguments)?, mm_per_px, size, arguments.start)?;
-        let correction = correction(arguments)?;
+        let described = machine(arguments)?;
+        let machine = FollowMachine::new(&described, mm_per_px, size, arguments.start)?;
+        let mut correction = correction(arguments)?;
+        let corrected_px = correction.as_ref().map(Correction::size_px);
+        let is_real = arguments.from.is_some();
+        let is_turned =
+            arguments.live.is_some() && is_real && described.config().follower.camera_turn_deg != 0.0;
+        let turn_deg = if is_turned { described.config().follower.camera_turn_deg } else { 0.0 };
+        let turned_lens = if is_turned { correction.take() } else { None };
+        let area = match &arguments.live {
+            Some(_) => Leader::area(&described, &machine)?,
+            None => machine.area(),
+        };
         let camera = CameraSettings { seed: arguments.seed, ..*arguments.camera };
         let eyes = match (&arguments.from, sheet) {
             (None, Some(sheet)) => {
                 Eyes::Simulated(Box::new(SimulatedCamera::new(&Paper::of(&sheet.picture), camera)))
             }
             (from, _) => {
-                Eyes::Real(WindowSource::open(from.as_deref().unwrap_or(Path::new("")), arguments.window)?)
+                let from = from.as_deref().unwrap_or(Path::new(""));
+                let within = Duration::from_secs(arguments.picture_s.into());
+                Eyes::Real(match &arguments.live {
+                    Some(_) => WindowSource::awaiting(from, arguments.window, within)?,
+                    None => WindowSource::open(from, arguments.window)?,
+                })
             }
         };
         let random_px = if sheet.is_some() { arguments.table_error } else { 0.0 };
@@ -116,17 +144,23 @@ impl<'a> Course<'a> {
         };
         let is_gif = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "gif");
         let film = arguments.animation.as_ref().filter(|path| is_gif(path)).map(|_| FollowGif::default());
+        let leader =
+            arguments.live.as_ref().map(|port| Leader::open(&described, port, arguments)).transpose()?;
         Ok(Self {
             arguments,
             table: SimulatedTable::new(machine.at(), error),
-            corrected_px: correction.as_ref().map(Correction::size_px),
+            corrected_px,
             follower: Follower::new(
                 arguments,
-                machine.area(),
+                area,
                 correction,
                 sheet.map(|sheet| sheet.most_windows(camera.width_px)),
             ),
             machine,
+            leader,
+            told: None,
+            turn_deg,
+            turned_lens,
             eyes,
             moves_file,
             film,
@@ -140,10 +174,9 @@ impl<'a> Course<'a> {
 
     /// Goes to the start, and from there to the end.
     fn run(&mut self) -> Result<Ended, String> {
-        if let Some(file) = &mut self.moves_file {
-            file.push(&self.machine, &[self.machine.at()], Tool::Up)?;
+        if let Err(error) = self.arrive(&[self.machine.at()], Tool::Up, self.machine.now_s()) {
+            return Ok(Ended::Failed(error));
         }
-        self.wait(self.machine.now_s());
         let most = match &self.follower {
             Follower::Ours(_) => u64::MAX, // it knows itself
             Follower::Published(..) => self.arguments.windows.unwrap_or(PUBLISHED_WINDOWS),
@@ -158,10 +191,17 @@ impl<'a> Course<'a> {
                 Err(end) => break end,
             };
             shown.set(self.windows);
-            match self.follower.observe(&window, self.table.commanded()) {
-                Step::Move { path, tool } => self.go(&path, tool)?,
-                Step::LineLost { .. } => self.lost += 1,
+            let pose = self.told.unwrap_or_else(|| self.table.commanded());
+            let gone = match self.follower.observe(&window, pose) {
+                Step::Move { path, tool } => self.go(&path, tool),
+                Step::LineLost { .. } => {
+                    self.lost += 1;
+                    self.stay()
+                }
                 Step::Done(end) => break Ended::Said(end),
+            };
+            if let Err(error) = gone {
+                break Ended::Failed(error);
             }
         };
         shown.finish();
@@ -171,11 +211,11 @@ impl<'a> Course<'a> {
     /// The next window, or why there is none.
     fn window(&mut self) -> Result<Gray, Ended> {
         let window = match &mut self.eyes {
-            Eyes::Simulated(camera) => camera.window(self.table.place()),
+            Eyes::Simulated(camera) => camera.window(self.told.unwrap_or_else(|| self.table.place())),
             Eyes::Real(source) => match source.next_window() {
                 Ok(Some(window)) => window,
                 Ok(None) => return Err(Ended::NoMorePictures(self.table.commanded())),
-                Err(error) => return Err(Ended::Failed(error)),
+                Err(error) => return Err(Ended::Failed(self.with_place(error))),
             },
         };
         let size = (window.width(), window.height());
@@ -186,6 +226,13 @@ impl<'a> Course<'a> {
                 size.0, size.1
             )));
         }
+        let window = if self.turn_deg == 0.0 {
+            window
+        } else {
+            let straight = self.turned_lens.as_ref().map(|lens| lens.corrected(&window));
+            turned(straight.as_ref().unwrap_or(&window), self.turn_deg).map_err(Ended::Failed)?
+        };
+        self.window_px = window.width();
         if let Some(film) = &mut self.film {
             film.see(&window, self.frames.len());
         }
@@ -196,22 +243,61 @@ impl<'a> Course<'a> {
     /// Makes a move.
     fn go(&mut self, path: &[PxPoint], tool: Tool) -> Result<(), String> {
         self.moves += 1;
-        if let Some(file) = &mut self.moves_file {
-            file.push(&self.machine, path, tool)?;
-        }
         let (table, frames) = (&mut self.table, &mut self.frames);
         let seconds = self.machine.make(path, tool, &mut |to, tool| {
             table.go(to, tool);
             frames.push(FollowFrame { at: table.place(), tool });
         })?;
-        self.wait(seconds);
+        if path.is_empty() && self.leader.is_some() {
+            return self.stay();
+        }
+        self.arrive(path, tool, seconds)
+    }
+
+    /// Another picture from here. It has a number of its own where a machine is led.
+    fn stay(&mut self) -> Result<(), String> {
+        match self.leader {
+            Some(_) => self.arrive(&[self.table.commanded()], Tool::Up, 0.0),
+            None => Ok(()),
+        }
+    }
+
+    /// A move of the plan becomes one of the real machine: a led one is led there, for another the move is
+    /// written, and it is waited for as long as that takes.
+    fn arrive(&mut self, path: &[PxPoint], tool: Tool, seconds: f64) -> Result<(), String> {
+        if let Some(leader) = &self.leader {
+            let led = leader.look_at(self.machine.on_sheet(self.machine.at()));
+            let told = led.map_err(|error| self.with_place(error))?;
+            self.told = Some(self.machine.of_sheet(told));
+        }
+        if let Some(file) = &mut self.moves_file {
+            file.push(&self.machine, path, tool)?;
+        }
+        if let Eyes::Real(source) = &self.eyes {
+            let seconds = if self.leader.is_some() { 0.0 } else { seconds };
+            source.wait(seconds + 1e-3 * f64::from(self.arguments.settle_ms));
+        }
         Ok(())
     }
 
-    /// Waits until a real machine has made a move, and stands still.
-    fn wait(&self, seconds: f64) {
-        if let Eyes::Real(source) = &self.eyes {
-            source.wait(seconds + 1e-3 * f64::from(self.arguments.settle_ms));
+    /// What went wrong, with the place and the picture of a machine that is led.
+    fn with_place(&self, error: String) -> String {
+        let (Some(_), at) = (&self.leader, self.machine.at()) else { return error };
+        let sheet = self.machine.on_sheet(at);
+        format!(
+            "{error} (before picture {}; the camera was led to ({:.1}, {:.1}) px, ({:.3}, {:.3}) mm)",
+            self.windows, at.x, at.y, sheet.x, sheet.y
+        )
+    }
+
+    /// Draws what was followed with the led machine's tool, if that was asked for and all went well.
+    fn draw(&mut self, end: Ended) -> Ended {
+        let is_over = matches!(end, Ended::Said(End::Complete) | Ended::Stopped);
+        let (Some(leader), true, true) = (&self.leader, self.arguments.draw, is_over) else { return end };
+        let on_sheet = |line: &Vec<PxPoint>| line.iter().map(|at| self.machine.on_sheet(*at)).collect();
+        match leader.draw(self.table.strokes().iter().map(on_sheet).collect()) {
+            Ok(()) => end,
+            Err(error) => Ended::Failed(format!("the lines were followed, and not all drawn: {error}")),
         }
     }
 }

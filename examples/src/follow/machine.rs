@@ -103,6 +103,15 @@ impl FollowMachine {
         }
     }
 
+    /// That place of the picture.
+    #[must_use]
+    pub fn of_sheet(&self, place: Point) -> PxPoint {
+        PxPoint {
+            x: place.x / self.mm_per_px - self.around_px[0],
+            y: self.height_px - place.y / self.mm_per_px,
+        }
+    }
+
     /// What a move is for the planner.
     #[must_use]
     pub fn op(&self, to: PxPoint, tool: Tool) -> PlotOp {

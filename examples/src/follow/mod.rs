@@ -6,11 +6,15 @@ mod ended;
 mod files;
 mod follower;
 mod gif;
+mod kerf;
+mod leader;
+mod led;
 mod machine;
 mod moves;
 mod outcome;
 mod pictures;
 mod sheet;
+mod turned;
 #[cfg(all(feature = "camera", target_os = "linux"))]
 mod v4l_camera;
 mod window_source;

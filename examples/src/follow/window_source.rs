@@ -3,7 +3,7 @@
 use crate::shared::{at, read_file};
 use plotter_vector::{Gray, decode};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 #[cfg(all(feature = "camera", target_os = "linux"))]
 use crate::follow::v4l_camera::V4lCamera;
@@ -11,6 +11,9 @@ use crate::follow::v4l_camera::V4lCamera;
 /// What a picture's name ends with.
 const ENDINGS: [&str; 12] =
     ["png", "jpg", "jpeg", "tif", "tiff", "webp", "bmp", "gif", "pgm", "pbm", "ppm", "pnm"];
+
+/// How often it is looked whether a picture has come, and grows no more.
+const AWAITED_EVERY: Duration = Duration::from_millis(20);
 
 /// Where windows come from. Each is grey, and the square middle of its picture.
 #[derive(Debug)]
@@ -24,6 +27,12 @@ enum From {
     Folder {
         name: PathBuf,
         files: std::vec::IntoIter<PathBuf>,
+    },
+    /// A folder whose pictures come while a machine waits for them: the number of the next, and how long.
+    Awaited {
+        name: PathBuf,
+        number: u64,
+        within: Duration,
     },
     #[cfg(all(feature = "camera", target_os = "linux"))]
     Camera(Box<V4lCamera>),
@@ -54,10 +63,29 @@ impl WindowSource {
         Ok(Self { from, side_px })
     }
 
+    /// The same, for a machine that waits: of a folder the picture that is called by its number, 0 at first,
+    /// is waited for at most `within`.
+    ///
+    /// # Errors
+    ///
+    /// As [`open`](Self::open), but a folder must have no such pictures yet: they were taken elsewhere.
+    pub fn awaiting(path: &Path, side_px: Option<u32>, within: Duration) -> Result<Self, String> {
+        if !path.is_dir() {
+            return Self::open(path, side_px);
+        }
+        if let Some(old) = pictures(path)?.into_iter().find(|file| number_of(file).is_some()) {
+            return Err(at(
+                &old,
+                &"was here before the machine was: empty the folder, lest an old picture leads it",
+            ));
+        }
+        Ok(Self { from: From::Awaited { name: path.to_owned(), number: 0, within }, side_px })
+    }
+
     /// Whether time passes between the pictures: a folder does not wait for a machine.
     #[must_use]
     pub const fn is_live(&self) -> bool {
-        !matches!(self.from, From::Folder { .. })
+        !matches!(self.from, From::Folder { .. } | From::Awaited { .. })
     }
 
     /// The next window; none when a folder has no more.
@@ -70,6 +98,11 @@ impl WindowSource {
             From::Folder { files, .. } => {
                 let Some(file) = files.next() else { return Ok(None) };
                 decode(&read_file(&file)?).map_err(|error| at(&file, &error))?
+            }
+            From::Awaited { name, number, within } => {
+                let picture = awaited(name, *number, *within)?;
+                *number += 1;
+                picture
             }
             #[cfg(all(feature = "camera", target_os = "linux"))]
             From::Camera(camera) => camera.picture()?,
@@ -90,7 +123,7 @@ impl WindowSource {
     #[must_use]
     pub fn name(&self) -> String {
         match &self.from {
-            From::Folder { name, .. } => name.display().to_string(),
+            From::Folder { name, .. } | From::Awaited { name, .. } => name.display().to_string(),
             #[cfg(all(feature = "camera", target_os = "linux"))]
             From::Camera(camera) => camera.name().to_owned(),
         }
@@ -101,6 +134,40 @@ impl WindowSource {
         if self.is_live() && seconds > 0.0 {
             std::thread::sleep(Duration::from_secs_f64(seconds.min(3600.0)));
         }
+    }
+}
+
+/// The number that a picture is called by: 7 for `7.png` and `0007.jpg`.
+fn number_of(file: &Path) -> Option<u64> {
+    file.file_stem()?.to_str()?.parse().ok()
+}
+
+/// The picture of a number, once it is there and whole.
+fn awaited(folder: &Path, number: u64, within: Duration) -> Result<Gray, String> {
+    let until = Instant::now() + within;
+    let (mut bytes_before, mut broken) = (None, None);
+    loop {
+        let file = pictures(folder)?.into_iter().find(|file| number_of(file) == Some(number));
+        if let Some(file) = file {
+            let bytes = read_file(&file)?.len();
+            // Whoever writes it may not be done: it is whole when it grows no more and can be read.
+            if bytes_before.replace(bytes) == Some(bytes) {
+                match decode(&read_file(&file)?) {
+                    Ok(picture) => return Ok(picture),
+                    Err(error) => broken = Some(at(&file, &error)),
+                }
+            }
+        }
+        if Instant::now() >= until {
+            let missing = || {
+                at(
+                    folder,
+                    &format!("no picture {number} (such as {number}.png) came within {} s", within.as_secs()),
+                )
+            };
+            return Err(broken.unwrap_or_else(missing));
+        }
+        std::thread::sleep(AWAITED_EVERY);
     }
 }
 

@@ -18,6 +18,7 @@ mod convert_dxf_command;
 mod convert_svg_command;
 mod first_programs;
 mod follow_command;
+mod follow_live;
 mod licences;
 mod long_sheet_command;
 mod long_sheet_drawing;

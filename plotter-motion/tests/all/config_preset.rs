@@ -42,7 +42,7 @@ const TEXTILE_PLOTTER: Preset = Preset {
 };
 
 const PLASMA_FOLLOWER: Preset =
-    Preset { file: "plasma-follower.toml", config: plasma_follower, keys: (65, 5), repeats: "[y.stepper]" };
+    Preset { file: "plasma-follower.toml", config: plasma_follower, keys: (66, 5), repeats: "[y.stepper]" };
 
 /// The camera and the torch are chosen, not documented: the code has no such machine, so it is said here.
 fn plasma_follower() -> MachineConfig {

@@ -9,7 +9,7 @@ use crate::log::{self, LogFile};
 use core::fmt;
 use core::time::Duration;
 use plotter_motion::config::MachineKind;
-use plotter_motion::protocol::hosts::NotNow;
+use plotter_motion::protocol::hosts::{MachineNotice, NotNow};
 use plotter_motion::{Machine, Point};
 use std::io::Write;
 use std::path::Path;
@@ -61,6 +61,10 @@ pub enum LedError {
         /// What it says.
         said: String,
     },
+    /// Nothing comes from it any more.
+    Silent,
+    /// It was reset, or switched off and on, on its way: where it is is not known.
+    Restarted,
     /// It does not say that it is there.
     NotArrived {
         /// Where it says to be, mm, in words.
@@ -81,6 +85,10 @@ impl fmt::Display for LedError {
             }
             Self::Refused { why } => write!(f, "the machine was not led on: {why}"),
             Self::Stopped { said } => write!(f, "the machine was stopped: {said}"),
+            Self::Silent => write!(f, "{}", MachineNotice::Silent),
+            Self::Restarted => f.write_str(
+                "the machine was switched off or reset on its way: lead it home, or say where it stands, then begin anew",
+            ),
             Self::NotArrived { at } => write!(f, "the machine does not arrive: it says to be at {at} mm"),
             Self::Failed { why } => f.write_str(why),
         }
@@ -153,20 +161,61 @@ impl LedMachine {
         self.lead(Hand::DrawTo(to, speed_mm_s))
     }
 
+    /// Draws lines through these places with the pen down, at one go as far as the machine's buffer allows,
+    /// and lifts it at their end, where the machine then says to be.
+    ///
+    /// # Errors
+    ///
+    /// [`LedError`]: it is not there.
+    pub fn draw_through(&self, places: &[Point], speed_mm_s: f64) -> Result<Point, LedError> {
+        let mut last = None;
+        for &to in places {
+            self.ask(Hand::DrawTo(to, speed_mm_s), false)?;
+            last = Some(to);
+        }
+        match last {
+            Some(to) => self.go(to),
+            None => Ok(self.session.by_hand().at),
+        }
+    }
+
+    /// Stops it at once, where its language has a word for that; nothing more is sent in any case.
+    pub fn stop(&self) {
+        self.session.command(Command::Stop);
+    }
+
     fn said(&self) -> String {
         self.session.messages().pop().map_or_else(String::new, |(_, words)| words)
     }
 
     /// Leads it, and waits until it says that it is there.
     fn lead(&self, hand: Hand) -> Result<Point, LedError> {
+        self.ask(hand, true)
+    }
+
+    /// Asks for something by hand, and waits until that is taken, or until the machine rests behind it; where
+    /// it says to be.
+    fn ask(&self, hand: Hand, until_it_rests: bool) -> Result<Point, LedError> {
         let until = Instant::now() + ARRIVES_WITHIN;
         let mut before = self.session.by_hand().taken;
+        let known = self.session.messages().pop();
         self.session.command(Command::Hand(hand));
         loop {
             match self.session.state() {
                 State::Failed(why) => return Err(LedError::Failed { why }),
                 State::Stopped | State::Locked => return Err(LedError::Stopped { said: self.said() }),
                 _ => {}
+            }
+            let said = self.session.messages();
+            let is_said = |notice: MachineNotice| {
+                let words = notice.to_string();
+                said.iter().rev().take_while(|said| Some(*said) != known.as_ref()).any(|said| said.1 == words)
+            };
+            if is_said(MachineNotice::Silent) {
+                return Err(LedError::Silent);
+            }
+            if is_said(MachineNotice::Greeted) {
+                return Err(LedError::Restarted);
             }
             let now = self.session.by_hand();
             if now.taken > before {
@@ -177,7 +226,7 @@ impl LedMachine {
                         self.session.command(Command::Hand(hand));
                     }
                     Some(why) => return Err(LedError::Refused { why }),
-                    None if now.rests => return Ok(now.at),
+                    None if now.rests || !until_it_rests => return Ok(now.at),
                     None => {}
                 }
             }

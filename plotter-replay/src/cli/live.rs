@@ -21,7 +21,7 @@ pub(crate) struct Live {
     /// The drawing: HPGL, G-code or the thesis' text. Without one, the machine is led by hand.
     pub(super) drawing: Option<PathBuf>,
     /// The serial port of a machine: a name, a part of one that only it has, or `auto` for the only one there
-    /// is.
+    /// is; or tcp:HOST:PORT for one on a network.
     #[arg(long, value_name = "DEV", conflicts_with = "simulate")]
     pub(super) port: Option<String>,
     /// Simulate the machine of this file instead [default without --port: the semi-virtual gantry].

@@ -5,14 +5,15 @@ use super::drawing::DrawingFile;
 use super::find_machine::{Found, Wanted, find_machine};
 use super::live::{LAST_LOOK, LOOK_EVERY, Live};
 use super::machine::lines_header;
+use super::open_line::{is_net, open_line};
 use crate::PlotterSettings;
 use crate::live::{
-    Command, Line, LivePage, MachineLog, PortLine, Recording, Server, Session, SessionSettings,
-    SimulatedMachine, Spoken, State, Timetable, terminal,
+    Command, Line, LivePage, MachineLog, Recording, Server, Session, SessionSettings, SimulatedMachine,
+    Spoken, State, Timetable, terminal,
 };
 use crate::log::{self, Event};
 use crate::resume::DrawingMark;
-use crate::serial::{Port, find};
+use crate::serial::find;
 use clap::ValueEnum;
 use plotter_motion::config::{MachineKind, PenLift};
 use plotter_motion::gcode::{PenControl, WriteOptions};
@@ -207,16 +208,16 @@ pub(super) fn lines_by_hand(
     let (line, tongue, name, baud): (Arc<dyn Line>, _, _, _) = match port {
         Some(name) => {
             let name = find(name).map_err(|error| said(&error))?;
-            let open =
-                |baud| Port::open(&name, baud).and_then(PortLine::new).map_err(|error| error.to_string());
-            let wanted = Wanted { tongue: protocol.tongue(), baud: config.serial.baud, is_fixed: false };
+            let open = |baud| open_line(&name, baud, false);
+            let wanted =
+                Wanted { tongue: protocol.tongue(), baud: config.serial.baud, is_fixed: is_net(&name) };
             let Found { line, tongue, baud } = match protocol.tongue() {
                 Some(tongue) if tongue != Tongue::Hpgl => {
                     Found { line: open(config.serial.baud)?, tongue, baud: config.serial.baud }
                 }
                 _ => find_machine(&name, wanted, open, out)?,
             };
-            (Arc::new(line), tongue, name, baud)
+            (line, tongue, name, baud)
         }
         None => {
             let tongue = protocol.tongue().unwrap_or(Tongue::Grbl);
@@ -271,7 +272,7 @@ impl Live {
                 let name = find(name).map_err(|error| error.to_string())?;
                 let (line, tongue, found) = self.open_lines(&name, config.serial.baud, out)?;
                 baud = found;
-                (Arc::new(line), tongue, name, None)
+                (line, tongue, name, None)
             }
             None => {
                 let tongue = self.protocol.tongue().unwrap_or(Tongue::Grbl);
@@ -326,20 +327,14 @@ impl Live {
         name: &str,
         baud: u32,
         out: &mut impl Write,
-    ) -> Result<(PortLine, Tongue, u32), String> {
-        let open = |baud| {
-            let port = if self.flow == Flow::Dtr {
-                Port::open_with_handshake(name, baud)
-            } else {
-                Port::open(name, baud)
-            };
-            port.and_then(PortLine::new).map_err(|error| error.to_string())
-        };
+    ) -> Result<(Arc<dyn Line>, Tongue, u32), String> {
+        let open = |baud| open_line(name, baud, self.flow == Flow::Dtr);
         let baud = self.baud.unwrap_or(baud);
         match self.protocol.tongue() {
             Some(tongue) if tongue != Tongue::Hpgl => Ok((open(baud)?, tongue, baud)),
             tongue => {
-                let wanted = Wanted { tongue, baud, is_fixed: self.baud.is_some() };
+                let is_fixed = self.baud.is_some() || is_net(name);
+                let wanted = Wanted { tongue, baud, is_fixed };
                 let Found { line, tongue, baud } = find_machine(name, wanted, open, out)?;
                 Ok((line, tongue, baud))
             }

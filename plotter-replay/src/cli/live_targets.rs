@@ -4,12 +4,13 @@ use super::commands::{Done, Verdict, say, say_first};
 use super::drawing::DrawingFile;
 use super::live::{LAST_LOOK, LOOK_EVERY, Link, Live};
 use super::machine::{belt_header, belt_tolerance, clock_bits, header_of};
+use super::open_line::open_line;
 use crate::live::{
-    Command, DrawingStep, Line, LinkChoice, LivePage, MachineLog, PortLine, Recording, Server, Session,
+    Command, DrawingStep, Line, LinkChoice, LivePage, MachineLog, Recording, Server, Session,
     SessionSettings, SimulatedMachine, Spoken, State, Telemetry, drawing_steps, terminal,
 };
 use crate::log::{self, FileWriter, LogFile};
-use crate::serial::{Port, find};
+use crate::serial::find;
 use crate::{PlotterSettings, ResumePoint, resume::DrawingMark};
 use plotter_motion::protocol::HostSettings;
 use plotter_motion::toolpath::from_mm;
@@ -19,6 +20,9 @@ use std::io::Write;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
+
+/// The line to a machine, and what its port is called.
+type NamedLine = (Arc<dyn Line>, String);
 
 /// What a line leads to.
 struct Connected {
@@ -143,23 +147,22 @@ impl Live {
     }
 
     /// The machine's port, if it is on one, and what that is called.
-    fn open_port(&self, machine: &Machine) -> Result<Option<(PortLine, String)>, String> {
+    fn open_port(&self, machine: &Machine) -> Result<Option<NamedLine>, String> {
         let Some(name) = &self.port else { return Ok(None) };
         let name = find(name).map_err(|error| error.to_string())?;
-        let port = Port::open(&name, machine.config().serial.baud).map_err(|error| error.to_string())?;
-        Ok(Some((PortLine::new(port).map_err(|error| error.to_string())?, name)))
+        Ok(Some((open_line(&name, machine.config().serial.baud, false)?, name)))
     }
 
     /// The machine on its port, whose line is recorded here; or a simulated one, which records itself.
     fn connect(
         &self,
         machine: &Machine,
-        port: Option<(PortLine, String)>,
+        port: Option<NamedLine>,
         boot: Option<u32>,
         writer: FileWriter,
     ) -> Result<(Connected, Recording<LogFile>), String> {
         if let Some((line, name)) = port {
-            let connected = Connected { line: Arc::new(line), telemetry: None, name };
+            let connected = Connected { line, telemetry: None, name };
             return Ok((connected, Recording::Line(writer)));
         }
         let log = MachineLog::new(writer);
@@ -297,8 +300,7 @@ pub(super) fn targets_by_hand(
     let (line, name): (Arc<dyn Line>, _) = match port {
         Some(name) => {
             let name = find(name).map_err(|error| error.to_string())?;
-            let port = Port::open(&name, config.serial.baud).map_err(|error| error.to_string())?;
-            (Arc::new(PortLine::new(port).map_err(|error| error.to_string())?), name)
+            (open_line(&name, config.serial.baud, false)?, name)
         }
         None => {
             let spoken = if is_belt { Spoken::Digits } else { Spoken::Link { boot } };

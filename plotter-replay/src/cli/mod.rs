@@ -30,6 +30,8 @@ mod live_hosted;
 #[cfg(feature = "live")]
 mod live_targets;
 mod machine;
+#[cfg(feature = "live")]
+mod open_line;
 mod output;
 mod record;
 mod render;

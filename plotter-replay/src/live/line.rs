@@ -3,7 +3,7 @@
 use crate::serial::{Port, PortError};
 use core::fmt;
 use core::time::Duration;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A serial line: one thread listens while another sends.
 pub trait Line: Send + Sync + fmt::Debug {
@@ -34,6 +34,24 @@ pub trait Line: Send + Sync + fmt::Debug {
     /// it is listened to.
     fn now(&self) -> Option<Duration> {
         None
+    }
+}
+
+impl<L: Line + ?Sized> Line for Arc<L> {
+    fn send(&self, bytes: &[u8]) -> Result<(), PortError> {
+        (**self).send(bytes)
+    }
+
+    fn offer(&self, bytes: &[u8]) -> Result<usize, PortError> {
+        (**self).offer(bytes)
+    }
+
+    fn receive(&self, bytes: &mut [u8], wait: Duration) -> Result<usize, PortError> {
+        (**self).receive(bytes, wait)
+    }
+
+    fn now(&self) -> Option<Duration> {
+        (**self).now()
     }
 }
 

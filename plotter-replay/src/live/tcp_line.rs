@@ -59,10 +59,25 @@ impl TcpLine {
                 continue;
             }
             // What is written goes out at once: a line has no packets.
-            let ready = stream.set_nodelay(true).and_then(|()| stream.set_nonblocking(false));
+            let ready = stream.set_nodelay(true).and_then(|()| stream.set_nonblocking(true));
             if ready.is_ok() {
                 lock(&self.news).push("a program has connected");
                 *host = Some(stream);
+            }
+        }
+    }
+
+    /// What has come.
+    fn read(&self, bytes: &mut [u8]) -> usize {
+        let host = &mut *lock(&self.host);
+        self.accept(host);
+        let Some(stream) = host else { return 0 };
+        match stream.read(bytes) {
+            Ok(count) if count > 0 || bytes.is_empty() => count,
+            Err(error) if passes(&error) => 0,
+            _ => {
+                self.lose(host);
+                0
             }
         }
     }
@@ -73,9 +88,9 @@ impl TcpLine {
     }
 }
 
-/// A time-out or an interruption, after which the line is as before.
-fn passes(error: &io::Error) -> bool {
-    matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted)
+/// Nothing there, or an interruption, after which the line is as before.
+pub(super) fn passes(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted)
 }
 
 impl Line for TcpLine {
@@ -86,16 +101,9 @@ impl Line for TcpLine {
     fn offer(&self, bytes: &[u8]) -> Result<usize, PortError> {
         let host = &mut *lock(&self.host);
         let Some(stream) = host else { return Ok(bytes.len()) }; // said to nobody
-        let sent = stream.set_nonblocking(true).and_then(|()| stream.write(bytes));
-        match sent {
-            Ok(count) => {
-                let _ = stream.set_nonblocking(false); // the next reading tells, if it is gone
-                Ok(count)
-            }
-            Err(error) if passes(&error) => {
-                let _ = stream.set_nonblocking(false);
-                Ok(0)
-            }
+        match stream.write(bytes) {
+            Ok(count) => Ok(count),
+            Err(error) if passes(&error) => Ok(0),
             Err(_) => {
                 self.lose(host);
                 Ok(bytes.len())
@@ -104,26 +112,12 @@ impl Line for TcpLine {
     }
 
     fn receive(&self, bytes: &mut [u8], wait: Duration) -> Result<usize, PortError> {
-        let host = &mut *lock(&self.host);
-        self.accept(host);
-        let Some(stream) = host else {
-            std::thread::sleep(wait);
-            return Ok(0);
-        };
-        let read = stream
-            .set_read_timeout(Some(wait.max(Duration::from_micros(100))))
-            .and_then(|()| stream.read(bytes));
-        match read {
-            Ok(0) => {
-                self.lose(host);
-                Ok(0)
-            }
-            Ok(count) => Ok(count),
-            Err(error) if passes(&error) => Ok(0),
-            Err(_) => {
-                self.lose(host);
-                Ok(0)
-            }
+        let count = self.read(bytes);
+        if count > 0 {
+            return Ok(count);
         }
+        // Systems wait for a socket in ticks of some milliseconds: a simulated machine would be that slow.
+        std::thread::sleep(wait);
+        Ok(self.read(bytes))
     }
 }

@@ -1,12 +1,14 @@
 //! Hosts of machines that answer lines, each with a simulated machine at the other end.
 
 use crate::driven::{Desk, drawing, machine, planned};
-use plotter_motion::gcode::WriteOptions;
+use plotter_motion::gcode::{PenControl, WriteOptions};
 use plotter_motion::protocol::hosts::{
-    Grbl, HostState, LineHost, LineHostSettings, MDraw, MachineHost, MachineNotice, NotNow, Request,
+    Grbl, HostState, Hpgl, Language, LineHost, LineHostSettings, MDraw, MachineHost, MachineNotice, Marlin,
+    NotNow, Request,
 };
-use plotter_motion::{Axis, PlotOp, Point, Vec2};
+use plotter_motion::{Axis, Pen, PlotOp, Point, Vec2};
 use plotter_replay::live::Spoken;
+use plotter_replay::log::Event;
 use std::time::Duration;
 
 const LONG: Duration = Duration::from_secs(600);
@@ -75,7 +77,7 @@ fn assert_pauses_lose_nothing(mut desk: Desk, every: Duration, least_pauses: usi
                 }
                 pauses += 1;
                 assert!(pauses < 300, "it comes no further: {:?}", desk.host.status());
-                assert_eq!(desk.host.status().pen, plotter_motion::Pen::Up);
+                assert_eq!(desk.host.status().pen, Pen::Up);
                 if pauses % 3 == 0 {
                     desk.ask(Request::Jog { by: Vec2::new(3.0, 2.0), feed_mm_s: 30.0 });
                     desk.wait(Duration::from_millis(400));
@@ -440,4 +442,42 @@ fn a_killed_host_s_change_of_pens_is_asked_for_again_and_no_other() {
         desk.ink()
     };
     assert!(desk.ink() == plain, "{} places, {} as planned", desk.ink().len(), plain.len());
+}
+
+/// Languages without a question that is answered in the middle of anything are asked behind the last line.
+#[test]
+fn a_way_by_hand_ends_with_the_place_that_the_machine_says() {
+    let pen = PenControl::Commands { up: "G4 P0\nM280 P0 S160", down: "G4 P0\nM280 P0 S90" };
+    let options = WriteOptions { pen, settle: Duration::ZERO, ..WriteOptions::default() };
+    let hosts: [(Spoken, Box<dyn MachineHost>); 4] = [
+        (Spoken::Grbl, grbl(Vec::new())),
+        (Spoken::Marlin, boxed(Marlin::new(options))),
+        (Spoken::MDraw, boxed(MDraw::new("M1 160", "M1 90"))),
+        (Spoken::Hpgl, boxed(Hpgl::new())),
+    ];
+    for (spoken, host) in hosts {
+        let mut desk = Desk::new(host, &machine(), spoken, "");
+        desk.until(&[HostState::Ready], LONG);
+        desk.wait(Duration::from_secs(3)); // with all that it asks at first
+        for to in [Point::new(20.0, 10.0), Point::new(30.0, 20.0)] {
+            desk.ask(Request::ByHand(PlotOp::Travel { to }));
+            let is_there = |desk: &Desk| desk.host.status().at.is_some_and(|at| at.distance(to) < 0.03);
+            desk.round();
+            assert!(!is_there(&desk), "{spoken:?}: before it moves");
+            desk.wait(Duration::from_secs(5));
+            assert!(is_there(&desk), "{spoken:?}: {:?} for {to:?}", desk.host.status());
+        }
+        // With the pen lowered it stays so.
+        desk.ask(Request::ByHand(PlotOp::Draw { to: Point::new(30.0, 25.0), feed_mm_s: Some(20.0) }));
+        desk.wait(Duration::from_secs(5));
+        let mut said = desk.events().into_iter().filter_map(|(_, event)| match event {
+            Event::Pen(pen) => Some(pen),
+            _ => None,
+        });
+        assert_eq!(said.next_back(), Some(Pen::Down), "{spoken:?}");
+    }
+}
+
+fn boxed<L: Language + 'static>(language: L) -> Box<dyn MachineHost> {
+    Box::new(LineHost::new(language, LineHostSettings::default(), core::iter::empty()))
 }

@@ -204,6 +204,11 @@ impl Language for Hpgl {
         let _ = out.write_str("\x1b.M;;;10;0;69:\x1b.E\x1b.M;;;10:PU;OE;OF;OA;\n");
     }
 
+    fn place(&mut self, out: &mut OpText) {
+        let _ = self.lead(out);
+        let _ = out.write_str("OA;\n");
+    }
+
     fn questions(&mut self, out: &mut OpText) {
         let _ = self.lead(out);
         let _ = out.write_str("OI;OA;\n");

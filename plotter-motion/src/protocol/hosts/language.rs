@@ -136,6 +136,11 @@ pub trait Language {
     /// then comes before it, or by the query.
     fn rest(&mut self, out: &mut OpText);
 
+    /// Lines that ask where the machine stands once all before is done, and leave the pen as it is.
+    fn place(&mut self, out: &mut OpText) {
+        self.rest(out);
+    }
+
     /// Questions for the beginning.
     fn questions(&mut self, _out: &mut OpText) {}
 

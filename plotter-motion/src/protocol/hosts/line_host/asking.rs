@@ -143,6 +143,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                 self.is_free()?;
                 self.language.write(op, &mut text).map_err(|_| NotNow::OutOfRange)?;
                 self.by_hand(&text, true, Purpose::ByHand)?;
+                self.led = Some(0);
                 self.pen = match op {
                     PlotOp::Draw { .. } | PlotOp::DrawArc { .. } => Pen::Down,
                     PlotOp::Travel { .. } => Pen::Up,
@@ -157,7 +158,9 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                 }
                 self.ends_jog = false;
                 let has_word = self.language.jog(self.at.unwrap_or_default(), by, feed_mm_s, &mut text);
-                self.by_hand(&text, has_word, Purpose::Jog)
+                self.by_hand(&text, has_word, Purpose::Jog)?;
+                self.led = Some(0);
+                Ok(())
             }
             Request::EndJog => {
                 self.is_free()?;

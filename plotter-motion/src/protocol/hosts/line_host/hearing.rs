@@ -128,6 +128,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
     pub(super) fn report(&mut self, now: Duration, doing: Option<Doing>, at: Option<Point>) {
         self.at = at.or(self.at);
         self.is_told |= at.is_some();
+        self.led = self.led.filter(|&asks| asks == 0 || at.is_none());
         if self.phase == Phase::Unheard {
             self.first_heard();
         }

@@ -23,6 +23,9 @@ const MOST_URGENT: usize = 32;
 const ROOM_FOR_OP: usize = 12;
 /// How often a machine is asked where it rests, where its answer comes wrong.
 const MOST_ASKS: u8 = 5;
+/// So long after the last line by hand a machine that is not asked all the time is asked where it stands: longer
+/// than from one piece of a movement to the next while a key is held, ten a second.
+const HAND_RESTS_AFTER: Duration = Duration::from_millis(150);
 /// Answered lines that are kept where they have numbers: as many as the machine keeps before it reads a
 /// line's number (`BUFSIZE` of Marlin).
 const KEPT_LINES: usize = 4;
@@ -155,6 +158,8 @@ pub struct LineHost<L, I> {
     /// How often the machine was asked at this rest where it stands, and whether it has said so.
     asks: u8,
     is_told: bool,
+    /// How often it was asked where it stands since it was led by hand, if it has not said so.
+    led: Option<u8>,
     /// The longest that the drawing has stood still so far.
     longest_dwell: Duration,
     /// When a line began to go out last, or was answered.
@@ -214,6 +219,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             knows_place: true,
             asks: 0,
             is_told: false,
+            led: None,
             longest_dwell: Duration::ZERO,
             stirred: Duration::ZERO,
             jogs: false,
@@ -323,6 +329,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
             self.overdue(now);
         }
         self.ask_for_room(now);
+        self.ask_for_place(now);
         self.write();
         let state = self.state();
         if state != self.told {
@@ -392,7 +399,8 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
         let asks =
             self.room_asked.map_or(asks, |asked| asks.min(asked.saturating_add(self.settings.ask_every)));
         let heard_out = self.hears_until.unwrap_or(Duration::MAX);
-        Some(asks.min(silent).min(heard_out)).filter(|&wake| wake < Duration::MAX)
+        let place = self.place_due().unwrap_or(Duration::MAX);
+        Some(asks.min(silent).min(heard_out).min(place)).filter(|&wake| wake < Duration::MAX)
     }
 
     fn ask(&mut self, _: Duration, request: Request) -> Result<(), NotNow> {

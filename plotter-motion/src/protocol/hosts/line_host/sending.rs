@@ -3,7 +3,10 @@
 use super::super::language::{Language, OpText};
 use super::super::line_queue::{MOST_LINE, Purpose};
 use super::super::{MachineNotice, Words};
-use super::{HEARS_OUT, LineHost, MOST_STRAYS, Phase, QUESTIONS_FOR_REST, ROOM_FOR_OP, Then};
+use super::{
+    HAND_RESTS_AFTER, HEARS_OUT, LineHost, MOST_ASKS, MOST_STRAYS, Phase, QUESTIONS_FOR_REST, ROOM_FOR_OP,
+    Then,
+};
 use crate::{Pen, PlotOp};
 use core::time::Duration;
 
@@ -226,6 +229,27 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             let mut text = OpText::default();
             self.language.rest(&mut text);
             self.push(&text, Purpose::Rest);
+        }
+    }
+
+    /// When a machine that is not asked all the time is to be asked where its way by hand has ended, if ever.
+    pub(super) fn place_due(&self) -> Option<Duration> {
+        let is_over = self.queue.is_out() && self.queue.in_flight().lines == 0 && self.is_free().is_ok();
+        // (a place that comes some time behind its question is asked for once: questions fill the buffer)
+        let most = if L::RESTS_BY_REPORT { 1 } else { MOST_ASKS };
+        let is_due = L::QUERY.is_none() && self.led.is_some_and(|asks| asks < most) && is_over;
+        is_due.then(|| self.stirred.saturating_add(HAND_RESTS_AFTER))
+    }
+
+    /// Asks it then.
+    pub(super) fn ask_for_place(&mut self, now: Duration) {
+        if self.place_due().is_none_or(|due| now < due) {
+            return;
+        }
+        let mut text = OpText::default();
+        self.language.place(&mut text);
+        if self.push(&text, Purpose::ByHand) {
+            self.led = self.led.map(|asks| asks.saturating_add(1));
         }
     }
 
