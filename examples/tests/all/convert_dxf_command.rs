@@ -74,7 +74,7 @@ fn a_drawing_of_many_metres_is_asked_for_its_unit() {
     }
     // No machine is as large as this, whatever the unit.
     let folder = Folder::new();
-    let input = folder.write("a.dxf", &metres.replace("\r\n30\r\n", "\r\n300\r\n"));
+    let input = folder.write("a.dxf", metres.replace("\r\n30\r\n", "\r\n300\r\n"));
     let said = complaint("convert", &[&input, &folder.file("b.gcode")]);
     assert!(said.contains("the drawing is 300.0 x 25.0 m, since"), "{said}");
     assert!(!std::path::Path::new(&folder.file("b.gcode")).exists());
