@@ -90,13 +90,7 @@ const BOUNDS: [Bounds; 16] = [
     },
     // asked: 120 vertices, fewer than are possible
     Bounds { picture: "grey_aa", vertices: 140, mean_px: 0.1, greatest_px: 1.5, ..ANY },
-    Bounds {
-        picture: "noisy_scan", // a mean of 0.45 px at the junctions with 20 strokes, 0.51 with 16
-        strokes: 20,
-        mean_px: 0.16,
-        junctions: (0.52, 0.9),
-        ..ANY
-    },
+    Bounds { picture: "noisy_scan", strokes: 40, mean_px: 0.16, junctions: (0.5, 0.9), ..ANY },
     Bounds { picture: "two_colour", vertices: 165, mean_px: 0.12, junctions: (0.5, 0.9), ..ANY },
     Bounds {
         picture: "small_marks",
