@@ -4,8 +4,8 @@
 //   cncjs.js draw PORT FILE   the drawing, with a pause and a resume on its way
 //   cncjs.js lead PORT        settings, homing, jog and its end, hold and resume, overrides, reset, unlock
 //
-// CNCJS is the folder that it was installed into. Its server listens on a free port of 127.0.0.1 and keeps its
-// settings in a folder of its own, which is taken away at the end.
+// CNCJS is the folder that it was installed into. Its server listens on a free port of 127.0.0.1 and keeps
+// its settings in a folder of its own, which is taken away at the end.
 "use strict";
 const fs = require("fs"), net = require("net"), os = require("os"), path = require("path");
 const { spawn } = require("child_process");

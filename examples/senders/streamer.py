@@ -33,7 +33,8 @@ class Led:
                 self.state, self.at = data[0], data[1]
             elif event == "on_rx_buffer_percent" and self.runs:
                 # In the library's own thread, in which it sends on at each answer. Nothing holds its threads
-                # apart: begun in another one, a line is sent twice or not at all if the first answer comes early.
+                # apart: begun in another one, a line is sent twice or not at all if the first answer comes
+                # early.
                 self.runs = False
                 self.grbl.job_run()
             elif event in ("on_error", "on_alarm"):

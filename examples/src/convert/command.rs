@@ -22,9 +22,9 @@ use std::process::ExitCode;
 /// pen, 1, 2, … in the order in which they come, or each layer (--pens). Clip paths and masks cut it, and
 /// white is taken for the paper (--paper). Its texts are set in the fonts that --font gives, and never in
 /// others, or drawn in letters of one line (--single-stroke): so a file becomes the same strokes everywhere.
-/// In the SVG that it writes, all that one pen draws until the next is taken is a group, and has that pen when
-/// it is read again; the sheet of an SVG keeps its size. Layers of a DXF are pens, and its texts are set in
-/// the font of HPGL's labels.
+/// In the SVG that it writes, all that one pen draws until the next is taken is a group, and has that pen
+/// when it is read again; the sheet of an SVG keeps its size. Layers of a DXF are pens, and its texts are
+/// set in the font of HPGL's labels.
 #[derive(Debug, Parser)]
 #[command(
     version,

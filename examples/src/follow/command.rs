@@ -17,8 +17,8 @@ pub(super) const WINDOWS: u64 = 2_000_000;
 /// Fewest pixels of a window a side.
 const LEAST_SIDE_PX: f64 = MappingFollower::LEAST_WINDOW_PX as f64;
 
-/// Follows the lines of a picture with a simulated camera on a simulated table, or what a real camera sees; on
-/// paper, or with a real machine.
+/// Follows the lines of a picture with a simulated camera on a simulated table, or what a real camera sees;
+/// on paper, or with a real machine.
 #[derive(Debug, Parser)]
 #[command(
     version,

@@ -65,9 +65,15 @@ pub struct StepperCommand {
     /// Greatest jerk along the path, mm/s³; used with --s-curve [default: the machine's, 10000]
     #[arg(long, value_name = "J", value_parser = positive, allow_negative_numbers = true)]
     pub(super) jerk: Option<f64>,
-    /// Greatest jerk as a vector, mm/s³, in the mode tolerance: the motion is averaged over some hundredths of
-    /// a second, which takes part of the tolerance and more time
-    #[arg(long, value_name = "J", value_parser = positive, allow_negative_numbers = true, conflicts_with_all = ["s_curve", "jerk", "estimate"])]
+    /// Greatest jerk as a vector, mm/s³, in the mode tolerance: the motion is averaged over some hundredths
+    /// of a second, which takes part of the tolerance and more time
+    #[arg(
+        long,
+        value_name = "J",
+        value_parser = positive,
+        allow_negative_numbers = true,
+        conflicts_with_all = ["s_curve", "jerk", "estimate"]
+    )]
     pub(super) jerk_vector: Option<f64>,
     /// Steps per millimetre of both motors [default: the machine's, 87.58]
     #[arg(long, value_name = "N", value_parser = steps_per_mm, allow_negative_numbers = true)]

@@ -120,6 +120,32 @@ impl Drop for Simulated {
     }
 }
 
+/// A folder with a machine, and what a run on it leaves there.
+struct Run {
+    folder: tempfile::TempDir,
+    machine: String,
+    moves: String,
+    report: String,
+    log: String,
+}
+
+impl Run {
+    /// `keys` are lines of the machine's `[follower]`.
+    fn new(keys: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+        let (moves, report, log) = (file("m.csv"), file("r.json"), file("led.plog"));
+        Self { machine: machine(folder.path(), keys), folder, moves, report, log }
+    }
+
+    /// Arguments of `follow` for it, and others with a space between them.
+    fn arguments<'a>(&'a self, input: &[&'a str], others: &'a str) -> Vec<&'a str> {
+        let [moves, report, log] = [&self.moves, &self.report, &self.log];
+        let files = ["--machine", &self.machine, "--moves", moves, "--report", report, "--log", log];
+        input.iter().copied().chain(files).chain(others.split(' ')).collect()
+    }
+}
+
 /// Follows a drawing twice, with no machine and with one: the followed lines are the same within a step.
 fn follows_as_without(folder: &Path, machine: &str, image: &str, live: &[&str]) {
     let file = |name: &str| folder.join(name).to_str().unwrap().to_owned();
@@ -164,32 +190,12 @@ fn the_line_is_that_of_no_machine_in_every_language() {
 
 #[test]
 fn an_alarm_in_the_middle_ends_it_with_its_words_and_what_was_followed_is_kept() {
-    let folder = tempfile::tempdir().unwrap();
-    let machine = machine(folder.path(), "");
-    let image = picture(folder.path(), ring);
-    let file = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    let (moves, written, log) = (file("m.csv"), file("r.json"), file("led.plog"));
-    let mut simulated = Simulated::new(&machine, "grbl", "10");
-    let port = simulated.port.clone();
-    let arguments = [
-        &image,
-        "--machine",
-        &machine,
-        "--camera",
-        "size=160",
-        "--live",
-        &port,
-        "--protocol",
-        "grbl",
-        "--moves",
-        &moves,
-        "--report",
-        &written,
-        "--log",
-        &log,
-        "--draw",
-    ];
-    let rows = || std::fs::read_to_string(&moves).map_or(0, |text| text.lines().count());
+    let run = Run::new("");
+    let image = picture(run.folder.path(), ring);
+    let mut simulated = Simulated::new(&run.machine, "grbl", "10");
+    let others = format!("--camera size=160 --live {} --protocol grbl --draw", simulated.port);
+    let arguments = run.arguments(&[&image], &others);
+    let rows = || std::fs::read_to_string(&run.moves).map_or(0, |text| text.lines().count());
     let output = std::thread::scope(|scope| {
         let led = scope.spawn(|| run_example("follow", &arguments));
         let until = Instant::now() + FOR_EVER;
@@ -204,10 +210,10 @@ fn an_alarm_in_the_middle_ends_it_with_its_words_and_what_was_followed_is_kept()
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     assert!(said.contains("the machine was stopped:") && said.contains("alarm"), "{said}");
     assert!(said.contains("(before picture ") && said.contains(" mm)"), "{said}");
-    let value = report(Path::new(&written));
+    let value = report(Path::new(&run.report));
     assert_eq!(value["finished"], Value::Bool(false));
     assert!(value["path_points"].as_array().unwrap().len() > 5 && rows() >= 60, "{value}");
-    let sent = sent(Path::new(&log));
+    let sent = sent(Path::new(&run.log));
     assert!(sent.contains("G0 X") && !sent.contains("M3"), "{sent}"); // it only looked
 }
 
@@ -245,33 +251,15 @@ fn drawn(sent: &str) -> Vec<Vec<(f64, f64)>> {
 #[test]
 fn the_tool_draws_what_the_camera_beside_it_has_followed_half_the_kerf_on_the_right() {
     for kerf_mm in [0.0, 1.0] {
-        let folder = tempfile::tempdir().unwrap();
-        let keys = format!("camera_x_mm = 5.0\ncamera_y_mm = -3.0\nkerf_mm = {kerf_mm:.1}");
-        let machine = machine(folder.path(), &keys);
-        let image = picture(folder.path(), |x, y| (148.0..152.0).contains(&y) && (100.0..232.0).contains(&x));
-        let file = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-        let (written, log) = (file("r.json"), file("led.plog"));
-        let arguments = [
-            &image,
-            "--machine",
-            &machine,
-            "--camera",
-            "size=160",
-            "--live",
-            "simulated",
-            "--protocol",
-            "grbl",
-            "--speed",
-            AS_FAST_AS_IT_GOES,
-            "--report",
-            &written,
-            "--log",
-            &log,
-            "--draw",
-        ];
+        let run = Run::new(&format!("camera_x_mm = 5.0\ncamera_y_mm = -3.0\nkerf_mm = {kerf_mm:.1}"));
+        let line = |x: f64, y: f64| (148.0..152.0).contains(&y) && (100.0..232.0).contains(&x);
+        let image = picture(run.folder.path(), line);
+        let others =
+            format!("--camera size=160 --live simulated --protocol grbl --speed {AS_FAST_AS_IT_GOES} --draw");
+        let arguments = run.arguments(&[&image], &others);
         let output = run_example("follow", &arguments);
         assert!(output.status.success(), "{output:?}");
-        let (value, sent) = (report(Path::new(&written)), sent(Path::new(&log)));
+        let (value, sent) = (report(Path::new(&run.report)), sent(Path::new(&run.log)));
         let (drawn, followed) = (drawn(&sent), strokes(&value));
         assert_eq!((drawn.len(), followed.len()), (1, 1), "{sent}");
         // The machine's y runs up, and the picture has all of its height.
@@ -327,43 +315,22 @@ fn photographs(
 
 #[test]
 fn a_folder_is_waited_for_and_the_camera_may_be_turned() {
-    let folder = tempfile::tempdir().unwrap();
-    let machine = machine(folder.path(), "camera_turn_deg = 30.0");
-    let pictures = folder.path().join("pictures");
+    let run = Run::new("camera_turn_deg = 30.0");
+    let pictures = run.folder.path().join("pictures");
     std::fs::create_dir(&pictures).unwrap();
-    let file = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    let (moves, written, log) = (file("m.csv"), file("r.json"), file("led.plog"));
-    let arguments = [
-        "--from",
-        pictures.to_str().unwrap(),
-        "--machine",
-        &machine,
-        "--start",
-        "200,150",
-        "--live",
-        "simulated",
-        "--protocol",
-        "grbl",
-        "--speed",
-        AS_FAST_AS_IT_GOES,
-        "--settle-ms",
-        "0",
-        "--moves",
-        &moves,
-        "--report",
-        &written,
-        "--log",
-        &log,
-    ];
+    let others = format!(
+        "--start 200,150 --live simulated --protocol grbl --speed {AS_FAST_AS_IT_GOES} --settle-ms 0"
+    );
+    let arguments = run.arguments(&["--from", pictures.to_str().unwrap()], &others);
     let line = |places: &[(f64, f64)]| places.iter().map(|(x, y)| PxPoint::new(*x, *y)).collect::<Vec<_>>();
     let lines = [line(&[(140.0, 180.0), (210.0, 120.0), (290.0, 170.0)])];
     let output = std::thread::scope(|scope| {
         let led = scope.spawn(|| run_example("follow", &arguments));
-        photographs(&pictures, Path::new(&moves), &lines, 30.0, &|| led.is_finished());
+        photographs(&pictures, Path::new(&run.moves), &lines, 30.0, &|| led.is_finished());
         led.join().unwrap()
     });
     assert!(output.status.success(), "{output:?}");
-    let followed = strokes(&report(Path::new(&written)));
+    let followed = strokes(&report(Path::new(&run.report)));
     let whole: Vec<PxPoint> = followed.concat();
     let off = off(&whole, &lines[0]).max(off(&lines[0], &whole));
     println!("off by {off} px");

@@ -16,8 +16,8 @@ pub struct FollowerConfig {
     pub camera_x_mm: f64,
     /// How far above the tool on the sheet it looks, mm.
     pub camera_y_mm: f64,
-    /// By how much the camera is turned against the machine, degrees, counterclockwise as seen from above: what
-    /// lies to the right in its picture lies so far round from x on the sheet.
+    /// By how much the camera is turned against the machine, degrees, counterclockwise as seen from above:
+    /// what lies to the right in its picture lies so far round from x on the sheet.
     pub camera_turn_deg: f64,
     /// Width of what the tool cuts away, mm: it goes half of it beside the line, on the right of its way.
     pub kerf_mm: f64,

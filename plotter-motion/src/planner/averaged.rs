@@ -1,11 +1,12 @@
-//! [`PlannerSettings::averaged`]: what to plan with so that the average of the motion keeps a jerk as a vector.
+//! [`PlannerSettings::averaged`]: what to plan with so that the average of the motion keeps a jerk as a
+//! vector.
 
 use super::settings::{AccelLimit, MOST_JERK};
 use super::{AllModes, PathMode, PlanError, PlannerSettings};
 
-/// Share of the tolerance that the average may take, the rest is for the corners. Less makes the window short,
-/// and with it the acceleration; more makes corners slow. Of the owl and the curves of the results 0.35, 0.5,
-/// 0.65 and 0.8 take 38.3, 37.2, 37.4, 39.3 s and 53.3, 51.1, 49.7, 48.8 s.
+/// Share of the tolerance that the average may take, the rest is for the corners. Less makes the window
+/// short, and with it the acceleration; more makes corners slow. Of the owl and the curves of the results
+/// 0.35, 0.5, 0.65 and 0.8 take 38.3, 37.2, 37.4, 39.3 s and 53.3, 51.1, 49.7, 48.8 s.
 const AVERAGE_SHARE: f64 = 0.6;
 
 /// What a planner is given, and the window over which its motion is averaged.
@@ -29,8 +30,8 @@ impl Averaged {
 
 impl PlannerSettings {
     /// What to plan with so that the motion, averaged over a window by
-    /// [`AveragedSteps`](crate::stepgen::AveragedSteps), has at most this jerk as a vector, in mm/s³, at every
-    /// instant, and still keeps the tolerance, the acceleration and the speed of these settings.
+    /// [`AveragedSteps`](crate::stepgen::AveragedSteps), has at most this jerk as a vector, in mm/s³, at
+    /// every instant, and still keeps the tolerance, the acceleration and the speed of these settings.
     ///
     /// An acceleration of at most A averaged over T changes by at most 2 A / T a second, and the pen is at
     /// most A T² / 24 from the path. So with a jerk J, and σ of the tolerance ε for the average:

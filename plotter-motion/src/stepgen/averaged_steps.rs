@@ -10,10 +10,11 @@ use crate::StepPair;
 ///                        ────┘   └────                         ───╱    ╲───
 /// ```
 ///
-/// With the window T the acceleration is the mean of the planned one over T, as a vector, so it is never above
-/// the planned limit A; it changes by (a(t) − a(t − T)) / T, so the jerk is never above 2 A / T, as a vector;
-/// the speed is never above the planned one; and the pen is never farther than A T² / 24 from the planned
-/// path, because what is even over the window averages out. [`PlannerSettings::averaged`] chooses A and T.
+/// With the window T the acceleration is the mean of the planned one over T, as a vector, so it is never
+/// above the planned limit A; it changes by (a(t) − a(t − T)) / T, so the jerk is never above 2 A / T, as a
+/// vector; the speed is never above the planned one; and the pen is never farther than A T² / 24 from the
+/// planned path, because what is even over the window averages out. [`PlannerSettings::averaged`] chooses A
+/// and T.
 ///
 /// All of it is whole numbers: the sum of the places over the window is the number of steps in it times their
 /// age. A step leaves half way between two places of the motor, so the last place is the planned one. The pen
@@ -58,7 +59,8 @@ pub struct AveragedSteps<const N: usize> {
 /// One motor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Motor {
-    /// Sum of the planned places over the window less that of the place where the motor is, steps times ticks.
+    /// Sum of the planned places over the window less that of the place where the motor is, steps times
+    /// ticks.
     ahead: i64,
     /// Steps in the window: how that changes with each tick.
     slope: i64,

@@ -27,8 +27,8 @@ const CLOCK_HZ: u32 = 10_000_000;
 const ROOM: usize = 1 << 16;
 /// Places are averaged over this, s.
 const BIN_S: f64 = 0.000_5;
-/// Accelerations are second differences over so many bins, and the jerk is the difference of two over so many.
-/// A place is known to half a step at worst, which is 2000 mm/s³ then.
+/// Accelerations are second differences over so many bins, and the jerk is the difference of two over so
+/// many. A place is known to half a step at worst, which is 2000 mm/s³ then.
 const ACCEL_BINS: usize = 12;
 const JERK_BINS: usize = 30;
 /// By how much what is measured may exceed a limit, as in the audit of the planner.

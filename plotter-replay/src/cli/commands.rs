@@ -165,8 +165,8 @@ pub(crate) fn say_first<T: ToString>(out: &mut impl Write, list: &[T], count: u6
     }
 }
 
-/// Bytes of each side by which a protocol is told, some hundred lines, and records that are read for them: one a
-/// byte.
+/// Bytes of each side by which a protocol is told, some hundred lines, and records that are read for them:
+/// one a byte.
 const TELLING_BYTES: usize = 4_096;
 const TELLING_RECORDS: usize = 2 * TELLING_BYTES;
 

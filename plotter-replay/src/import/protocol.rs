@@ -1,7 +1,7 @@
 //! [`protocol_of`]: which protocol a recording is of, where nobody says it.
 
-/// What a line of the host or the machine begins with, and which protocol says so. Only what no other of these
-/// says: an `ok` is Grbl's and Marlin's.
+/// What a line of the host or the machine begins with, and which protocol says so. Only what no other of
+/// these says: an `ok` is Grbl's and Marlin's.
 ///
 /// Sources: the Grbl project's wiki, "Grbl v1.1 Interface"; Marlin's documentation, "G-code" and "Host
 /// communication"; the firmware xybot; EBB Command Set; HP 7475A Interfacing and Programming Manual.

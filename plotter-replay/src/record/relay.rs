@@ -16,9 +16,9 @@ const TOGETHER: Duration = Duration::from_micros(2_500);
 /// So long at most, where the line is full: nobody waits for the next byte then. (A wake-up with its reading
 /// and sending costs some 30 us, whatever is read.)
 const MOST_TOGETHER: Duration = Duration::from_millis(10);
-/// The wait is this many times what the bytes just read take on the line, over [`LINE_PARTS`]: on a full line it
-/// grows with each read. A host that waits for the answer to each line is held up for a third of that line at
-/// most.
+/// The wait is this many times what the bytes just read take on the line, over [`LINE_PARTS`]: on a full
+/// line it grows with each read. A host that waits for the answer to each line is held up for a third of
+/// that line at most.
 const WAIT_PARTS: u64 = 4;
 /// See [`WAIT_PARTS`].
 const LINE_PARTS: u64 = 3;
@@ -29,8 +29,8 @@ const HOST_TAKES_WITHIN: Duration = Duration::from_secs(1);
 /// Bytes read at once.
 const READ_BYTES: usize = 4_096;
 /// Bytes sent at once: a line that takes some may not take many without waiting. A serial port of Linux has
-/// room for several times that whenever it says that it has any. What a full line at 256000 baud brings within
-/// [`MOST_TOGETHER`], on a busy computer too, goes on in one piece.
+/// room for several times that whenever it says that it has any. What a full line at 256000 baud brings
+/// within [`MOST_TOGETHER`], on a busy computer too, goes on in one piece.
 const SEND_BYTES: usize = 512;
 
 /// One end of a line: what comes from it and what goes to it. Both have time-outs of some tenths of a second,
@@ -82,9 +82,9 @@ impl fmt::Display for RelayStop {
 /// A byte is recorded before it goes on, which costs a copy in memory: so an answer never stands before what
 /// it answers. If the recording fails, the bytes go on without it.
 ///
-/// `baud` is the line's speed, bits a second: by it a full line is known, whose bytes are read and passed on up to
-/// 10 ms later, many at a time. All others go on within 2.5 ms, or a third of the time that the bytes before
-/// them take on the line.
+/// `baud` is the line's speed, bits a second: by it a full line is known, whose bytes are read and passed
+/// on up to 10 ms later, many at a time. All others go on within 2.5 ms, or a third of the time that the
+/// bytes before them take on the line.
 #[must_use]
 pub fn relay(
     host: RelayEnd,

@@ -52,8 +52,8 @@ const ON_WAY_MM: f64 = 0.15;
 /// elsewhere.
 const NEAR_WAY_MM: f64 = 2.0;
 
-/// By how many steps the motors lead away from a place that they have passed: a way drawn in whole steps goes to
-/// and fro by one.
+/// By how many steps the motors lead away from a place that they have passed: a way drawn in whole steps
+/// goes to and fro by one.
 const PASSED_STEPS: f64 = 2.0;
 
 /// A straight move that is not made yet.

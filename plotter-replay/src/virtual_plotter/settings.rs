@@ -19,8 +19,8 @@ pub struct PlotterSettings {
     /// Which way the two motors of a belt turn; `None` where each moves an axis. Counts are those of the
     /// motors either way, and a belt has one scale, that of x.
     pub belt: Option<BeltSigns>,
-    /// The play of each axis of a machine whose log has steps: those that take it up move no carriage. The log
-    /// begins with both axes driven towards minus, as homing leaves them.
+    /// The play of each axis of a machine whose log has steps: those that take it up move no carriage. The
+    /// log begins with both axes driven towards minus, as homing leaves them.
     pub play: Backlash,
     /// Records that tell the position of the motors.
     pub counted_by: CountedBy,
@@ -102,8 +102,8 @@ pub struct SettingsError {
 
 impl PlotterSettings {
     /// The defaults with what a log's header says: `x_mm_per_pulse`, `y_mm_per_pulse`, `x_play_steps`,
-    /// `y_play_steps`, `p1_x_mm`, `p1_y_mm`, `begins_x_mm` and `begins_y_mm`, `resync_gap_ms`, `reached_tolerance_counts`, `belt_signs` and
-    /// `protocol`, each optional.
+    /// `y_play_steps`, `p1_x_mm`, `p1_y_mm`, `begins_x_mm` and `begins_y_mm`, `resync_gap_ms`,
+    /// `reached_tolerance_counts`, `belt_signs` and `protocol`, each optional.
     ///
     /// # Errors
     ///

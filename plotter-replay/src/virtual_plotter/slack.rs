@@ -3,8 +3,8 @@
 use plotter_motion::kinematics::Backlash;
 use plotter_motion::{Axis, Direction};
 
-/// How far each motor has turned, in the gap of its axis, from the flank that it drives towards minus, steps: 0 to
-/// the play.
+/// How far each motor has turned, in the gap of its axis, from the flank that it drives towards minus,
+/// steps: 0 to the play.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Slack {
     x: u16,

@@ -248,8 +248,8 @@ fn on_processor(process: u32) -> Duration {
     Duration::from_nanos(ns.sum())
 }
 
-/// What a recorder takes of a core while both sides send `text` over and over, a line full both ways, in pieces
-/// as a USB adapter hands them over, each millisecond.
+/// What a recorder takes of a core while both sides send `text` over and over, a line full both ways, in
+/// pieces as a USB adapter hands them over, each millisecond.
 fn share_of_a_core(baud: u32, [host_text, plotter_text]: [&'static [u8]; 2]) -> f64 {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();

@@ -312,7 +312,8 @@ fn a_port_that_is_closed_and_opened_again_finds_the_machine_as_it_was() {
         port.write_all(b"G91\nG1 X10 F600\n").unwrap();
         until(&mut *port, "ok\r\nok");
     }
-    // It goes on while nobody listens, and is not reset: a pseudo terminal has no DTR, as Grbl on USB of its own.
+    // It goes on while nobody listens, and is not reset: a pseudo terminal has no DTR, as Grbl on USB of
+    // its own.
     std::thread::sleep(Duration::from_millis(500));
     let mut port = simulated.open();
     port.write_all(b"G1 X5\n").unwrap();
@@ -350,8 +351,8 @@ fn noise_is_refused_line_by_line_and_moves_nothing() {
     let simulated = small(&["--speed", "4"], here);
     let mut port = simulated.open();
     until(&mut *port, "Grbl 1.1");
-    // Unprintable bytes are passed over, as Grbl does; what is left are two lines that are none, and one that is
-    // too long.
+    // Unprintable bytes are passed over, as Grbl does; what is left are two lines that are none, and one
+    // that is too long.
     port.write_all(b"\x00\x07G1 Q\x7f9\nGG\n").unwrap();
     until(&mut *port, "error:");
     port.write_all(&[&[b'X'; 100][..], b"\n"].concat()).unwrap();

@@ -209,8 +209,8 @@ fn a_broken_frame_change_draws_nothing() {
     assert!(search.found().unwrap_err().to_string().contains("not over yet"));
 }
 
-/// Paper that has shrunk looks as if it had folded between the marks: the run stops until somebody has looked.
-/// Paper that has swollen does not.
+/// Paper that has shrunk looks as if it had folded between the marks: the run stops until somebody has
+/// looked. Paper that has swollen does not.
 #[test]
 fn who_has_seen_flat_paper_may_say_so() {
     let feed = FeedSettings { swelling: 2e-4, ..FeedSettings::default() };

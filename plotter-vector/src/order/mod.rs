@@ -114,7 +114,8 @@ pub struct Order {
 /// eight drawings of 3 to 134 strokes, and took up to 70 ms.
 const LOOKS_PER_STROKE: u64 = 5_000;
 
-/// Most that [`OrderEffort::Fast`] looks at, some tens of milliseconds: a twentieth of the budget of the other.
+/// Most that [`OrderEffort::Fast`] looks at, some tens of milliseconds: a twentieth of the budget of the
+/// other.
 const FAST_LOOKS: u64 = 5_000_000;
 
 /// Looks at each stroke below which it does not begin: twice what a first descent takes on the 1,300 strokes

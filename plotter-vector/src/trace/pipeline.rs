@@ -164,8 +164,8 @@ pub struct Vectorized {
     pub beyond: Beyond,
     /// Ink that lies farther from the strokes than the tolerance of ours.
     pub bare: Spots,
-    /// Ink inside of areas that no pen draws, because they are outlined or hatched with gaps: no error is told
-    /// of it.
+    /// Ink inside of areas that no pen draws, because they are outlined or hatched with gaps: no error is
+    /// told of it.
     pub insides: Spots,
     /// How ink was told from paper; `None` for an empty sheet, or for a picture that came as a bitmap.
     pub split: Option<Split>,
@@ -181,9 +181,9 @@ pub struct Vectorized {
 /// inch, take 6 s and 0.9 GB.
 pub const MAX_INK_PIXELS: u64 = 1 << 25;
 
-/// From end to end of a gap that is drawn over in a picture that is evened, in widths of the lines: in strokes
-/// with grain, and in others, where a ball pen skips. A pen's dashes have more than a width of paper between
-/// them, so their ends, half a width inside of the ink, are farther apart.
+/// From end to end of a gap that is drawn over in a picture that is evened, in widths of the lines: in
+/// strokes with grain, and in others, where a ball pen skips. A pen's dashes have more than a width of
+/// paper between them, so their ends, half a width inside of the ink, are farther apart.
 const GRAIN_GAP_WIDTHS: f64 = 3.0;
 const SKIP_WIDTHS: f64 = 2.0;
 

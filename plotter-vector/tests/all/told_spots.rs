@@ -11,8 +11,8 @@ use plotter_vector::{
     trace::SheetErrors,
 };
 
-/// How much wider the library may take a pen than it is: it measures the ink, which the pixels make wider, and
-/// of short pieces half a width more is believed, px.
+/// How much wider the library may take a pen than it is: it measures the ink, which the pixels make wider,
+/// and of short pieces half a width more is believed, px.
 const WIDER_PX: f64 = 1.0;
 
 fn is_in(spot: &Spot, at: Pixel) -> bool {
@@ -87,8 +87,8 @@ fn the_inside_of_an_area_that_is_outlined_is_told() {
     let outlined = traced(AreaStyle::Outline);
     let Spots { number, pixels, largest } = &outlined.insides;
     assert_eq!((*number, largest.len()), (2, 2));
-    // The pen covers 1.25 px from what it draws, half a one more is allowed, and as much as a pixel is left open
-    // by the raster.
+    // The pen covers 1.25 px from what it draws, half a one more is allowed, and as much as a pixel is left
+    // open by the raster.
     let far = |least_px: f64| {
         let ink = squares();
         let in_square = |at: &Pixel| at.y < 150;

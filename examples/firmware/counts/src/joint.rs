@@ -7,8 +7,8 @@ use plotter_stitch::{Crossing, FitError, FrameTransform, JointEstimate, RigidFit
 
 /// The layout of `ReferenceLines::strip16`, without a heap.
 fn crossings() -> [Crossing; 16] {
-    // How far each mark is moved from its row, in steps of 0.65 mm: powers of 2 mod 11, less 5.5, and of 3 mod 7,
-    // less 3.5.
+    // How far each mark is moved from its row, in steps of 0.65 mm: powers of 2 mod 11, less 5.5, and of 3
+    // mod 7, less 3.5.
     const MOVED: [f64; 16] =
         [-4.5, -3.5, -1.5, 2.5, -0.5, 4.5, 3.5, 1.5, -2.5, 0.5, -2.5, -0.5, -1.5, 2.5, 0.5, 1.5];
     core::array::from_fn(|index| {

@@ -27,10 +27,10 @@ const MOST_PARTS: u8 = 16;
 /// An EBB (EiBotBoard) with firmware 2.8.1, by the documentation of its commands
 /// (evil-mad.github.io/EggBot/ebb2.html): it takes lines and gives answers and steps.
 ///
-/// - Steps come at ticks of 40 µs, by the documented accumulators. A step is given as the number of sixteenths
-///   of a full step that the step mode makes of it.
-/// - One command waits behind the running one. A third is answered only when there is room for it, and no line
-///   behind it is read before: not even the one that stops.
+/// - Steps come at ticks of 40 µs, by the documented accumulators. A step is given as the number of
+///   sixteenths of a full step that the step mode makes of it.
+/// - One command waits behind the running one. A third is answered only when there is room for it, and no
+///   line behind it is read before: not even the one that stops.
 /// - The pen's servo moves at its rate, every 24 ms.
 /// - The emergency stop cuts the motors' supply, as pulling the plug does: the board continues to count while
 ///   they stand, and QC reports it. The switch `prg` is the board's button.

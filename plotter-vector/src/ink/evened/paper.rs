@@ -23,9 +23,10 @@ pub(super) const DARKEST_PAPER: f32 = 8.0;
 /// Noise that is never less, levels: a picture is stored in whole ones.
 const LEAST_NOISE: f32 = 0.7;
 
-/// A tile whose noise is so many times the usual, in levels of the picture, is full of lines: these spread its
-/// darkness, and the paper between them is as elsewhere. A sensor's noise is the same in light and shadow to a
-/// few parts in ten; lines of a grid every four widths double that of a picture with 17 levels of contrast.
+/// A tile whose noise is so many times the usual, in levels of the picture, is full of lines: these spread
+/// its darkness, and the paper between them is as elsewhere. A sensor's noise is the same in light and
+/// shadow to a few parts in ten; lines of a grid every four widths double that of a picture with 17 levels
+/// of contrast.
 const FULL_OF_LINES: f32 = 1.5;
 
 /// And so is one that is darker than usual by so many standard deviations of the usual noise: the median of a

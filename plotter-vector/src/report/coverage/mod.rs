@@ -109,7 +109,8 @@ impl Faults {
         }
     }
 
-    /// Of lines one pixel wide, which need no width; what is bare is looked for only where some is known to be.
+    /// Of lines one pixel wide, which need no width; what is bare is looked for only where some is known to
+    /// be.
     pub(crate) fn of_hairlines(ink: &Bitmap, drawing: &Drawing, within_px: f64, has_bare: bool) -> Self {
         let index = Index::new(segments(drawing), ink.width(), ink.height());
         let beyond = index.beyond(ink, 0, &(0..ink.height()));

@@ -44,8 +44,8 @@ pub struct SheetErrors {
     pub beyond: Beyond,
     /// Ink that lies farther from the strokes than the tolerance of ours.
     pub bare: Spots,
-    /// Ink inside of areas that no pen draws, because they are outlined or hatched with gaps; the report has no
-    /// errors of it.
+    /// Ink inside of areas that no pen draws, because they are outlined or hatched with gaps; the report
+    /// has no errors of it.
     pub insides: Spots,
 }
 

@@ -23,8 +23,8 @@ const MOST_URGENT: usize = 32;
 const ROOM_FOR_OP: usize = 12;
 /// How often a machine is asked where it rests, where its answer comes wrong.
 const MOST_ASKS: u8 = 5;
-/// So long after the last line by hand a machine that is not asked all the time is asked where it stands: longer
-/// than from one piece of a movement to the next while a key is held, ten a second.
+/// So long after the last line by hand a machine that is not asked all the time is asked where it stands:
+/// longer than from one piece of a movement to the next while a key is held, ten a second.
 const HAND_RESTS_AFTER: Duration = Duration::from_millis(150);
 /// Answered lines that are kept where they have numbers: as many as the machine keeps before it reads a
 /// line's number (`BUFSIZE` of Marlin).
