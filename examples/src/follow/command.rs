@@ -4,6 +4,7 @@ use super::course::follow;
 use super::led::Led;
 use crate::shared::{ExitStatus, Telling, run};
 use clap::{Parser, ValueEnum};
+use plotter_replay::cli::free_log;
 use plotter_vector::follow::{CameraSettings, Lens, MappingFollower};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -112,8 +113,9 @@ pub struct FollowCommand {
     /// With --live simulated: seconds of the machine in one of ours, at most
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = speed)]
     pub(super) speed: f64,
-    /// With --live: the recording of the machine's line
-    #[arg(long, value_name = "F.plog", default_value = "follow.plog")]
+    /// With --live: the recording of the machine's line [default: follow.plog, or the first of follow-2.plog,
+    /// follow-3.plog, ... that is not there]
+    #[arg(long, value_name = "F.plog", default_value_os_t = free_log("follow"), hide_default_value = true)]
     pub(super) log: PathBuf,
     /// With --live and --from a folder: how long each picture is waited for, s
     #[arg(long, value_name = "S", default_value = "60", value_parser = clap::value_parser!(u32).range(1..=86_400))]

@@ -188,8 +188,9 @@ fn the_line_is_that_of_no_machine_in_every_language() {
     }
 }
 
-#[test]
-fn an_alarm_in_the_middle_ends_it_with_its_words_and_what_was_followed_is_kept() {
+/// Follows a ring on a machine to which something happens on the way: it ends with these words, what was
+/// followed is kept, and nothing was drawn.
+fn ends_in_the_middle(happens: impl FnOnce(&mut Simulated), words: [&str; 2]) {
     let run = Run::new("");
     let image = picture(run.folder.path(), ring);
     let mut simulated = Simulated::new(&run.machine, "grbl", "10");
@@ -203,18 +204,47 @@ fn an_alarm_in_the_middle_ends_it_with_its_words_and_what_was_followed_is_kept()
             assert!(Instant::now() < until, "it does not begin");
             std::thread::sleep(Duration::from_millis(20));
         }
-        writeln!(simulated.keyboard, "press x-min").unwrap();
+        happens(&mut simulated);
         led.join().unwrap()
     });
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
-    assert!(said.contains("the machine was stopped:") && said.contains("alarm"), "{said}");
+    assert!(words.iter().all(|words| said.contains(words)), "{words:?}: {said}");
     assert!(said.contains("(before picture ") && said.contains(" mm)"), "{said}");
     let value = report(Path::new(&run.report));
     assert_eq!(value["finished"], Value::Bool(false));
     assert!(value["path_points"].as_array().unwrap().len() > 5 && rows() >= 60, "{value}");
     let sent = sent(Path::new(&run.log));
     assert!(sent.contains("G0 X") && !sent.contains("M3"), "{sent}"); // it only looked
+}
+
+#[test]
+fn an_alarm_in_the_middle_ends_it() {
+    let pressed = |simulated: &mut Simulated| writeln!(simulated.keyboard, "press x-min").unwrap();
+    ends_in_the_middle(pressed, ["the machine was stopped:", "alarm"]);
+}
+
+#[test]
+fn a_reset_in_the_middle_ends_it() {
+    let reset = |simulated: &mut Simulated| writeln!(simulated.keyboard, "restart").unwrap();
+    ends_in_the_middle(reset, ["switched off or reset on its way", "home"]);
+}
+
+#[test]
+#[cfg(unix)]
+fn silence_in_the_middle_ends_it() {
+    // Its line stays open, and nobody answers.
+    let silenced = |simulated: &mut Simulated| {
+        let process = simulated.child.id().to_string();
+        assert!(Command::new("kill").args(["-STOP", &process]).status().unwrap().success());
+    };
+    ends_in_the_middle(silenced, ["nothing comes from the machine", "cable"]);
+}
+
+#[test]
+fn a_line_that_is_closed_in_the_middle_ends_it() {
+    let killed = |simulated: &mut Simulated| simulated.child.kill().unwrap();
+    ends_in_the_middle(killed, ["line", "tcp:"]);
 }
 
 /// The lines that the host has sent, without its questions between their bytes.

@@ -45,7 +45,7 @@ pub(crate) fn beginning(path: &Path, origin: Option<Point>) -> Result<Beginning,
     let mut words = origin.map(|at| format!("begins at ({:.3}, {:.3}) mm, as is said", at.x, at.y));
     settings.begins_at = origin;
     match settings.counted_by {
-        CountedBy::Grbl if header.text("controller").is_none() => {
+        CountedBy::Grbl | CountedBy::Marlin if header.text("controller").is_none() => {
             settings.pen = Detection::from_bytes(sent_text(path)?).options().pen;
         }
         CountedBy::Answers if origin.is_none() => {

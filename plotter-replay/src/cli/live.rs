@@ -1,6 +1,7 @@
 //! `live`: a machine watched and driven while it draws.
 
 use super::commands::Done;
+use super::free_log;
 use super::live_hosted::{Flow, Protocol};
 use super::machine::{read_machine, speed};
 use crate::live::LinkChoice;
@@ -54,7 +55,7 @@ pub(crate) struct Live {
     #[arg(long = "pen", value_name = "NUMBER=NAME", value_parser = pen_name)]
     pub(super) pens: Vec<(u8, String)>,
     /// The recording [default: live.plog, or the first of live-2.plog, live-3.plog, ... that is not there].
-    #[arg(short, long, value_name = "LOG", default_value_os_t = free_name(), hide_default_value = true)]
+    #[arg(short, long, value_name = "LOG", default_value_os_t = free_log("live"), hide_default_value = true)]
     pub(super) output: PathBuf,
     /// Show it in this terminal, not in a browser.
     #[arg(long)]
@@ -87,13 +88,6 @@ impl From<Link> for LinkChoice {
             Link::Frames => Self::Frames,
         }
     }
-}
-
-/// A name for a recording that none before it has: the last one may be needed for --resume.
-fn free_name() -> PathBuf {
-    let names = core::iter::once(PathBuf::from("live.plog"));
-    let more = (2..10_000_u32).map(|n| PathBuf::from(format!("live-{n}.plog")));
-    names.chain(more).find(|name| !name.exists()).unwrap_or_else(|| PathBuf::from("live.plog"))
 }
 
 /// A pen's number and what it is called.

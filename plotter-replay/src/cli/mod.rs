@@ -45,11 +45,25 @@ use commands::{Command, Verdict};
 pub use led_machine::{LedError, LedMachine, LedPort, Protocol};
 use output::{Output, Shown};
 use std::io::Write as _;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::OnceLock;
 
 /// Name of this crate's program in its messages and examples.
 const OWN_NAME: &str = "plotter-replay";
+
+/// A name for a recording that none before it has, in the working folder: `name.plog`, or the first of
+/// `name-2.plog`, `name-3.plog`, ... that is not there. The last one may be needed to go on after a breakdown.
+///
+/// ```
+/// assert_eq!(plotter_replay::cli::free_log("no-such").to_str(), Some("no-such.plog"));
+/// ```
+#[must_use]
+pub fn free_log(name: &str) -> PathBuf {
+    let first = PathBuf::from(format!("{name}.plog"));
+    let more = (2..10_000_u32).map(|n| PathBuf::from(format!("{name}-{n}.plog")));
+    core::iter::once(first.clone()).chain(more).find(|name| !name.exists()).unwrap_or(first)
+}
 
 /// Options for the output of a command.
 const QUIET: &str = "quiet";

@@ -17,7 +17,7 @@ impl TextLines {
     pub(super) fn of(protocol: Option<&str>) -> Option<Self> {
         let is_grbl = match protocol? {
             "grbl" => true,
-            "mdraw" => false,
+            "mdraw" | "marlin" | "ebb" => false,
             _ => return None,
         };
         Some(Self { is_grbl, begun: Default::default() })

@@ -1,9 +1,10 @@
 //! [`Line`]: a serial line that two threads may use at once.
 
-use crate::serial::{Port, PortError};
+use crate::serial::{Port, PortError, PortErrorKind};
 use core::fmt;
 use core::time::Duration;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 /// A serial line: one thread listens while another sends.
 pub trait Line: Send + Sync + fmt::Debug {
@@ -85,6 +86,28 @@ impl Line for PortLine {
     fn receive(&self, bytes: &mut [u8], wait: Duration) -> Result<usize, PortError> {
         lock(&self.reader).receive(bytes, wait)
     }
+}
+
+/// How long bytes may wait to be sent, as on a serial port.
+const SEND_WITHIN: Duration = Duration::from_secs(5);
+/// How often it is looked whether something has come, or has room: systems wait for a socket in ticks of some
+/// milliseconds, longer than a session listens.
+pub(super) const LOOK_EVERY: Duration = Duration::from_micros(500);
+
+/// Sends all of `bytes` on a line that takes some at a time.
+pub(super) fn send_all(line: &impl Line, name: &str, mut bytes: &[u8]) -> Result<(), PortError> {
+    let until = Instant::now() + SEND_WITHIN;
+    while !bytes.is_empty() {
+        let sent = line.offer(bytes)?;
+        bytes = bytes.get(sent..).unwrap_or_default();
+        if sent == 0 {
+            if Instant::now() >= until {
+                return Err(PortError { port: name.to_owned(), kind: PortErrorKind::Stuck });
+            }
+            std::thread::sleep(LOOK_EVERY);
+        }
+    }
+    Ok(())
 }
 
 /// What a thread that panicked left is still whole: every change under these locks is one step.

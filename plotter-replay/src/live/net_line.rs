@@ -1,7 +1,7 @@
 //! [`NetLine`]: the line to a machine behind a TCP port: a board on a network, a server of serial ports, or
 //! `simulate --tcp`.
 
-use super::line::{Line, lock};
+use super::line::{LOOK_EVERY, Line, lock, send_all};
 use super::tcp_line::passes;
 use crate::serial::{PortError, PortErrorKind};
 use core::time::Duration;
@@ -12,11 +12,6 @@ use std::time::Instant;
 
 /// So long a machine has to let a program in: one of the same house needs some milliseconds.
 const CONNECT_WITHIN: Duration = Duration::from_secs(5);
-/// How long bytes may wait to be sent, as on a serial port.
-const SEND_WITHIN: Duration = Duration::from_secs(5);
-/// How often it is looked whether something has come, or has room: systems wait for a socket in ticks of some
-/// milliseconds, longer than a session listens.
-const LOOK_EVERY: Duration = Duration::from_micros(500);
 
 /// The line to a machine behind a TCP port, which passes the bytes of a serial line and nothing else.
 #[derive(Debug)]
@@ -63,18 +58,7 @@ impl NetLine {
 
 impl Line for NetLine {
     fn send(&self, bytes: &[u8]) -> Result<(), PortError> {
-        let (mut bytes, until) = (bytes, Instant::now() + SEND_WITHIN);
-        while !bytes.is_empty() {
-            let sent = self.offer(bytes)?;
-            bytes = bytes.get(sent..).unwrap_or_default();
-            if sent == 0 {
-                if Instant::now() >= until {
-                    return Err(PortError { port: self.name.clone(), kind: PortErrorKind::Stuck });
-                }
-                std::thread::sleep(LOOK_EVERY);
-            }
-        }
-        Ok(())
+        send_all(self, &self.name, bytes)
     }
 
     fn offer(&self, bytes: &[u8]) -> Result<usize, PortError> {

@@ -1,6 +1,6 @@
 //! [`TcpLine`]: a line on a port of 127.0.0.1, for programs that know no pseudo terminals.
 
-use super::line::{Line, lock};
+use super::line::{Line, lock, send_all};
 use crate::serial::{PortError, PortErrorKind};
 use core::time::Duration;
 use std::io::{self, Read as _, Write as _};
@@ -95,7 +95,7 @@ pub(super) fn passes(error: &io::Error) -> bool {
 
 impl Line for TcpLine {
     fn send(&self, bytes: &[u8]) -> Result<(), PortError> {
-        self.offer(bytes).map(drop)
+        send_all(self, &self.name, bytes)
     }
 
     fn offer(&self, bytes: &[u8]) -> Result<usize, PortError> {
@@ -119,5 +119,35 @@ impl Line for TcpLine {
         // Systems wait for a socket in ticks of some milliseconds: a simulated machine would be that slow.
         std::thread::sleep(wait);
         Ok(self.read(bytes))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::live::NetLine;
+    use std::sync::Arc;
+
+    #[test]
+    fn what_a_full_line_does_not_take_at_once_is_sent_later() {
+        /// More than a socket keeps for a program that does not read.
+        const BYTES: usize = 1 << 24;
+        let machine = Arc::new(TcpLine::open(0).unwrap());
+        let host = NetLine::connect(machine.name()).unwrap();
+        host.send(b"?").unwrap();
+        let mut byte = [0; 1];
+        while machine.receive(&mut byte, Duration::from_millis(1)).unwrap() == 0 {}
+        let answers: Arc<Vec<u8>> = Arc::new((0..=250_u8).cycle().take(BYTES).collect());
+        let (line, sent) = (Arc::clone(&machine), Arc::clone(&answers));
+        let sender = std::thread::spawn(move || line.send(&sent));
+        std::thread::sleep(Duration::from_millis(50)); // nobody reads for a while
+        let (mut heard, mut bytes) = (Vec::with_capacity(BYTES), vec![0; 1 << 16]);
+        while heard.len() < BYTES {
+            let count = host.receive(&mut bytes, Duration::from_secs(10)).unwrap();
+            assert!(count > 0, "{} of {BYTES} bytes have come", heard.len());
+            heard.extend_from_slice(&bytes[..count]);
+        }
+        sender.join().unwrap().unwrap();
+        assert!(heard == *answers);
     }
 }

@@ -1,4 +1,4 @@
-//! [`Lines`]: a session of text lines, Grbl's or mDraw's, as what the machine has drawn.
+//! [`Lines`]: a session of text, of Grbl, mDraw, Marlin or HPGL, as what the machine has drawn.
 //!
 //! A host's line counts once it is answered, and is carried out then by the interpreter that reads drawings.
 //! What it draws is *planned*: nobody says when it is drawn. What the machine tells of itself bounds it:
@@ -11,7 +11,8 @@
 //!
 //! Where the log has the motors' steps, they are the way, and the lines only say where it should go.
 
-use super::{AnomalyKind, Reached, VirtualPlotter};
+use super::hpgl_text::HpglText;
+use super::{AnomalyKind, Reached, VirtualPlotter, marlin_lines};
 use core::time::Duration;
 use plotter_motion::gcode::{Interpreter, PenConvention, ReadOptions, Reader, ServoCommand, Spacing};
 use plotter_motion::{Pen, PlotOp, Point, Segment, StepPoint, toolpath::chords};
@@ -22,6 +23,8 @@ use std::collections::VecDeque;
 pub(super) enum Tongue {
     Grbl,
     MDraw,
+    Marlin,
+    Hpgl,
 }
 
 /// Facts about a session of text lines.
@@ -43,8 +46,10 @@ pub struct LineCounts {
 const MOST_LINE: usize = 256;
 /// Lines without an answer that are kept.
 const MOST_UNANSWERED: usize = 4_096;
-/// Moves that a machine has taken and not made, at most: queue and look-ahead of the largest are smaller.
+/// Lines that a machine has taken and not made, at most: queue and look-ahead of the largest are smaller.
 const MOST_PLANNED_LINES: usize = 48;
+/// The same of commands of HPGL: the 1024 bytes of a plotter's buffer, of which the shortest take four.
+const MOST_PLANNED_COMMANDS: usize = 256;
 /// How far from its way a machine may say to be, mm: the tenth of a millimetre by which paths are usually
 /// rounded, and four steps of the documented machine.
 const ON_WAY_MM: f64 = 0.15;
@@ -56,9 +61,18 @@ const NEAR_WAY_MM: f64 = 2.0;
 /// goes to and fro by one.
 const PASSED_STEPS: f64 = 2.0;
 
+/// A line of the host that is not answered yet.
+#[derive(Clone, Debug)]
+pub(super) struct Sent {
+    /// Its number, where it has one.
+    pub(super) number: Option<u64>,
+    /// What it says, without number and checksum.
+    pub(super) text: Vec<u8>,
+}
+
 /// A straight move that is not made yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Planned {
+pub(super) struct Planned {
     pen: Pen,
     number: u8,
     to: Point,
@@ -72,20 +86,24 @@ pub(super) struct Lines {
     tongue: Tongue,
     reader: Reader,
     interpreter: Interpreter,
+    /// What HPGL is read by.
+    pub(super) hpgl: Option<Box<HpglText>>,
     /// The host's line so far.
     line: Vec<u8>,
     ended_by_return: bool,
-    unanswered: VecDeque<Vec<u8>>,
+    pub(super) unanswered: VecDeque<Sent>,
     /// The machine's line so far.
     answer: Vec<u8>,
-    /// Whether mDraw's machine has said that the line under way is wrong.
-    is_refused: bool,
-    planned: VecDeque<Planned>,
+    /// Whether a machine that answers all lines alike has said that the one under way is wrong.
+    pub(super) is_refused: bool,
+    /// Whether the next answer is to no line: Marlin has asked for one again.
+    pub(super) asks_again: bool,
+    pub(super) planned: VecDeque<Planned>,
     /// From when on what is planned was being drawn.
     since: Duration,
     /// How near the steps have come to the place that is under way, mm.
     nearest_mm: f64,
-    knows_place: bool,
+    pub(super) knows_place: bool,
     last_report: Option<Duration>,
     last_answer: Option<Duration>,
     has_steps: bool,
@@ -104,11 +122,13 @@ impl Lines {
             tongue,
             reader: Reader::with_spacing(spacing),
             interpreter,
+            hpgl: (tongue == Tongue::Hpgl).then(Box::default),
             line: Vec::new(),
             ended_by_return: false,
             unanswered: VecDeque::new(),
             answer: Vec::new(),
             is_refused: false,
+            asks_again: false,
             planned: VecDeque::new(),
             since: Duration::ZERO,
             nearest_mm: f64::INFINITY,
@@ -128,9 +148,9 @@ impl Lines {
             return Ok((self.carry_out_mdraw(text), false));
         }
         let (text, is_jog) = match text.strip_prefix(b"$J=") {
-            Some(jog) => (jog, true),
+            Some(jog) if self.tongue == Tongue::Grbl => (jog, true),
             None if text.first() == Some(&b'$') => return Ok((Vec::new(), false)),
-            None => (text, false),
+            _ => (text, false),
         };
         let before = self.interpreter;
         if is_jog {
@@ -143,7 +163,8 @@ impl Lines {
             return if is_wrong { Err(()) } else { Ok((moves.collect(), false)) };
         }
         let (ops, is_wrong) = self.interpret(text);
-        if is_wrong {
+        // Marlin says of itself what it does not know, and knows far more than draws.
+        if is_wrong && self.tongue == Tongue::Grbl {
             return Err(());
         }
         let upper = text.to_ascii_uppercase();
@@ -152,8 +173,12 @@ impl Lines {
                 window == word && !upper.get(at + word.len()).is_some_and(u8::is_ascii_digit)
             })
         };
-        let waits = has(b"G4") || has(b"G04") || has(b"M2") || has(b"M02") || has(b"M30");
-        Ok((ops, waits))
+        let waiting: &[&[u8]] = match self.tongue {
+            Tongue::Grbl => &[b"G4", b"G04", b"M2", b"M02", b"M30"],
+            Tongue::MDraw | Tongue::Hpgl => &[],
+            Tongue::Marlin => &[b"G4", b"G28", b"M0", b"M1", b"M3", b"M4", b"M5", b"M400"],
+        };
+        Ok((ops, waiting.iter().any(|word| has(word))))
     }
 }
 
@@ -261,6 +286,10 @@ impl VirtualPlotter {
     /// Takes a byte of the host.
     pub(super) fn host_line_byte(&mut self, byte: u8) {
         let Some(lines) = &mut self.lines else { return };
+        if lines.tongue == Tongue::Hpgl {
+            self.hpgl_byte(byte);
+            return;
+        }
         let is_grbl = lines.tongue == Tongue::Grbl;
         match byte {
             // A movement by hand ends where the machine says.
@@ -289,14 +318,22 @@ impl VirtualPlotter {
 
     fn host_line(&mut self, line: Vec<u8>) {
         let Some(lines) = &mut self.lines else { return };
-        lines.counts.sent = lines.counts.sent.saturating_add(u64::from(!line.trim_ascii().is_empty()));
+        let sent = match lines.tongue {
+            Tongue::Marlin => marlin_lines::sent(&line),
+            _ => Sent { number: None, text: line },
+        };
+        let is_empty = sent.text.trim_ascii().is_empty();
+        if is_empty && lines.tongue == Tongue::Marlin {
+            return; // it says nothing to that
+        }
+        lines.counts.sent = lines.counts.sent.saturating_add(u64::from(!is_empty));
         if lines.unanswered.len() >= MOST_UNANSWERED {
             lines.unanswered.pop_front();
         }
         if lines.planned.is_empty() {
             lines.since = self.now;
         }
-        lines.unanswered.push_back(line);
+        lines.unanswered.push_back(sent);
         // A machine of mDraw's answers when it has moved; its steps come before.
         if lines.tongue == Tongue::MDraw && lines.unanswered.len() == 1 {
             self.plan_mdraw();
@@ -308,7 +345,7 @@ impl VirtualPlotter {
         let Some(lines) = &mut self.lines else { return };
         let Some(line) = lines.unanswered.front().cloned() else { return };
         lines.is_refused = false;
-        self.plan(&line);
+        self.plan(&line.text);
     }
 
     /// Takes a byte of the machine.
@@ -328,6 +365,9 @@ impl VirtualPlotter {
         match lines.tongue {
             Tongue::Grbl => self.grbl_answer(&answer),
             Tongue::MDraw => self.mdraw_answer(&answer),
+            Tongue::Marlin => self.marlin_answer(&answer),
+            // Answers to questions, of which it is not said what they are to.
+            Tongue::Hpgl => {}
         }
     }
 
@@ -376,11 +416,11 @@ impl VirtualPlotter {
     }
 
     /// The line that has waited longest is answered.
-    fn answered(&mut self, is_good: bool, answer: &str) {
+    pub(super) fn answered(&mut self, is_good: bool, answer: &str) {
         let now = self.now;
         let Some(lines) = &mut self.lines else { return };
         lines.last_answer = Some(now);
-        let Some(line) = lines.unanswered.pop_front() else { return };
+        let Some(Sent { text: line, .. }) = lines.unanswered.pop_front() else { return };
         if line.trim_ascii().is_empty() {
             return;
         }
@@ -392,14 +432,21 @@ impl VirtualPlotter {
             return;
         }
         lines.counts.accepted = lines.counts.accepted.saturating_add(1);
-        let homes = match lines.tongue {
-            Tongue::Grbl => line.trim_ascii().eq_ignore_ascii_case(b"$H"),
-            Tongue::MDraw => line.trim_ascii().to_ascii_uppercase().starts_with(b"G28"),
+        let upper = line.trim_ascii().to_ascii_uppercase();
+        let [x_homes, y_homes] = match lines.tongue {
+            Tongue::Grbl => [upper == b"$H"; 2],
+            Tongue::MDraw => [upper.starts_with(b"G28"); 2],
+            Tongue::Marlin => marlin_lines::homed_axes(&upper),
+            Tongue::Hpgl => [false; 2],
         };
-        if homes {
+        if x_homes || y_homes {
+            if lines.tongue == Tongue::Marlin {
+                self.all_drawn(now); // it is led home behind them
+            }
             self.forget_planned();
             self.slack = super::Slack::default();
-            self.put_at(Point::ORIGIN);
+            let at = self.settings.to_sheet(self.counted);
+            self.put_at(Point::new(if x_homes { 0.0 } else { at.x }, if y_homes { 0.0 } else { at.y }));
         } else if lines.tongue == Tongue::MDraw || self.plan(&line) {
             self.all_drawn(now);
         }
@@ -408,7 +455,6 @@ impl VirtualPlotter {
     /// Takes into the plan what a line draws; says whether all is drawn when it is answered.
     fn plan(&mut self, line: &[u8]) -> bool {
         let now = self.now;
-        let tolerance_mm = 0.5 * self.settings.x_mm_per_pulse.min(self.settings.y_mm_per_pulse);
         let Some(lines) = &mut self.lines else { return false };
         let from = lines.interpreter.modes().position;
         let Ok((ops, waits)) = lines.carry_out(line) else {
@@ -417,6 +463,16 @@ impl VirtualPlotter {
             return false;
         };
         let number = lines.counts.sent.saturating_sub(lines.unanswered.len() as u64);
+        self.plan_ops(from, ops, number, MOST_PLANNED_LINES);
+        waits
+    }
+
+    /// Takes into the plan what the line of this number draws from a place on; of lines farther back than
+    /// `most_lines` all is drawn.
+    fn plan_ops(&mut self, from: Point, ops: Vec<PlotOp>, number: u64, most_lines: usize) {
+        let now = self.now;
+        let tolerance_mm = 0.5 * self.settings.x_mm_per_pulse.min(self.settings.y_mm_per_pulse);
+        let Some(lines) = &mut self.lines else { return };
         let mut added = 0_u64;
         for op in chords([PlotOp::Travel { to: from }].into_iter().chain(ops), tolerance_mm).skip(1) {
             if let PlotOp::SelectPen { pen } = op {
@@ -431,13 +487,30 @@ impl VirtualPlotter {
         self.target_count = self.target_count.saturating_add(added);
         let first = lines.planned.front().map_or(number, |planned| planned.line);
         let drawn = usize::try_from(number.saturating_sub(first)).unwrap_or(0);
-        if drawn > MOST_PLANNED_LINES {
-            let until = number.saturating_sub(MOST_PLANNED_LINES as u64);
+        if drawn > most_lines {
+            let until = number.saturating_sub(most_lines as u64);
             let count = lines.planned.iter().take_while(|planned| planned.line < until).count();
             self.draw(count, now);
         }
         self.begin_planned();
-        waits
+    }
+
+    /// Takes a byte of a host that speaks HPGL.
+    fn hpgl_byte(&mut self, byte: u8) {
+        let now = self.now;
+        let Some(lines) = &mut self.lines else { return };
+        let Some(hpgl) = &mut lines.hpgl else { return };
+        let Some(read) = hpgl.push(byte) else { return };
+        lines.counts.sent = lines.counts.sent.saturating_add(u64::from(read.is_command));
+        lines.counts.accepted = lines.counts.sent;
+        if lines.planned.is_empty() {
+            lines.since = now;
+        }
+        let number = lines.counts.sent;
+        for line in read.not_understood {
+            self.note(now, AnomalyKind::LineNotUnderstood { line });
+        }
+        self.plan_ops(read.from, read.ops, number, MOST_PLANNED_COMMANDS);
     }
 
     /// The plan's next place is where the pen goes now.
@@ -540,7 +613,7 @@ impl VirtualPlotter {
     }
 
     /// The machine stands at `at`, and has nothing more to do.
-    fn stands_at(&mut self, at: Point) {
+    pub(super) fn stands_at(&mut self, at: Point) {
         let Some(lines) = &mut self.lines else { return };
         lines.last_report = Some(self.now);
         if !lines.knows_place && lines.planned.is_empty() {
@@ -591,7 +664,7 @@ impl VirtualPlotter {
     }
 
     /// What the machine says of its place is compared with where it should be, and believed.
-    fn compare_place(&mut self, at: Point) {
+    pub(super) fn compare_place(&mut self, at: Point) {
         let reported = self.settings.to_counts(at);
         let off = StepPoint::new(
             reported.x.saturating_sub(self.counted.x),
@@ -605,7 +678,7 @@ impl VirtualPlotter {
     }
 
     /// The recording begins with the pen at `at`.
-    fn begins_at(&mut self, at: Point) {
+    pub(super) fn begins_at(&mut self, at: Point) {
         if let Some(lines) = &mut self.lines {
             lines.knows_place = true;
             lines.interpreter.stand_at(at);
@@ -628,7 +701,7 @@ impl VirtualPlotter {
     }
 
     /// Nothing of what is planned will be drawn.
-    fn forget_planned(&mut self) {
+    pub(super) fn forget_planned(&mut self) {
         if let Some(lines) = &mut self.lines {
             lines.planned.clear();
         }
@@ -639,11 +712,11 @@ impl VirtualPlotter {
     /// The recording is over.
     pub(super) fn finish_lines(&mut self) {
         let Some(lines) = &mut self.lines else { return };
-        let unanswered = lines.unanswered.iter().filter(|line| !line.trim_ascii().is_empty()).count();
+        let unanswered = lines.unanswered.iter().filter(|line| !line.text.trim_ascii().is_empty()).count();
         if unanswered > 0 && lines.last_answer.is_none() {
             // Only one side was recorded: all of it is taken as it is.
             while let Some(line) = self.lines.as_mut().and_then(|lines| lines.unanswered.pop_front()) {
-                self.plan(&line);
+                self.plan(&line.text);
             }
         } else if unanswered > 0 {
             self.note(self.now, AnomalyKind::Unanswered { lines: unanswered as u64 });

@@ -21,9 +21,11 @@
 mod anomaly;
 mod drawing;
 mod host_digits;
+mod hpgl_text;
 mod leg;
 mod lines;
 mod linked;
+mod marlin_lines;
 mod noted;
 mod settings;
 mod slack;
@@ -113,6 +115,8 @@ impl VirtualPlotter {
         let lines = match settings.counted_by {
             CountedBy::Grbl => Some(lines(Tongue::Grbl)),
             CountedBy::MDraw => Some(lines(Tongue::MDraw)),
+            CountedBy::Marlin => Some(lines(Tongue::Marlin)),
+            CountedBy::Hpgl => Some(lines(Tongue::Hpgl)),
             CountedBy::Answers | CountedBy::Edges | CountedBy::Link | CountedBy::Steps => None,
         };
         // Lines, or the machine, say where the pen is lifted.

@@ -61,8 +61,14 @@ pub enum CountedBy {
     Grbl,
     /// The same of mDraw's language: the protocol `mdraw`.
     MDraw,
-    /// The machine's steps alone, of a session whose bytes are not read here: the protocols `marlin`,
-    /// `hpgl` and `ebb`. A log of the line, which has no steps, shows nothing.
+    /// The same of Marlin's language: the protocol `marlin`. Its machine tells where its lines lead, and
+    /// nothing of its way: what is drawn is known where a line waits for it.
+    Marlin,
+    /// Commands of HPGL, which no plotter answers, as soon as so many have followed that its buffer cannot
+    /// hold them: the protocol `hpgl`. Or its steps, where the log has them.
+    Hpgl,
+    /// The machine's steps alone, of a session whose bytes are not read here: the protocol `ebb`. A log of
+    /// the line, which has no steps, shows nothing.
     Steps,
 }
 
@@ -135,7 +141,9 @@ impl PlotterSettings {
             Some("link") => CountedBy::Link,
             Some("grbl") => CountedBy::Grbl,
             Some("mdraw") => CountedBy::MDraw,
-            Some("marlin" | "hpgl" | "ebb") => CountedBy::Steps,
+            Some("marlin") => CountedBy::Marlin,
+            Some("hpgl") => CountedBy::Hpgl,
+            Some("ebb") => CountedBy::Steps,
             Some("digits" | "messages") => CountedBy::Answers,
             None if !header.has("protocol") => CountedBy::Answers,
             _ => {
@@ -144,7 +152,8 @@ impl PlotterSettings {
                 return Err(SettingsError { key: "protocol", expected });
             }
         };
-        let is_lines = matches!(counted_by, CountedBy::Grbl | CountedBy::MDraw | CountedBy::Steps);
+        let is_lines =
+            matches!(counted_by, CountedBy::Grbl | CountedBy::MDraw | CountedBy::Marlin | CountedBy::Steps);
         let scale_mm = |mm: f64| if is_lines { STEP_MM } else { mm };
         let tolerance = f64::from(base.reached_tolerance_counts);
         let tolerance = number("reached_tolerance_counts", "0 to 100000 counts", counts, tolerance)?;

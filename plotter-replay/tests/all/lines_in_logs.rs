@@ -1,4 +1,4 @@
-//! Sessions of text lines, Grbl's and mDraw's, as the virtual plotter draws them: what was sent, as far as
+//! Sessions of text lines, Grbl's, mDraw's and Marlin's, as the virtual plotter draws them: what was sent, as far as
 //! the machine has taken it and says to be.
 
 use plotter_motion::{Axis, Direction, Pen, Point};
@@ -154,6 +154,65 @@ fn where_the_log_has_the_steps_they_are_the_way() {
     assert_eq!(plotter.reached_count(), 1);
 }
 
+/// Lines with numbers, of which the machine asks for one again; what it does not know is said.
+#[test]
+fn marlin_is_drawn_from_its_lines() {
+    let talk = Talk::of("marlin").says("start\n").line("N0 M110 N0*125").line("N1 G28*18").line("N2 M3*87");
+    let talk = talk.host("N3 G1 X10 F6O0*1\nN4 G1 Y5*96\n");
+    let talk = talk.says("Error:checksum mismatch, Last Line: 2\nResend: 3\nok\n");
+    let talk = talk.line("N3 G1 X10 F600*2").line("N4 G1 Y5*96").host("N5 M801*1\n");
+    let talk = talk.says("echo:Unknown command: \"M801\"\nok\n").says("echo:busy: processing\n");
+    let talk = talk.at_ms(2_000).line("N6 M400*1").host("M114\n");
+    let plotter = talk.says("X:10.00 Y:5.00 Z:0.00 E:0.00 Count X:800 Y:400 Z:0\nok\n").end();
+    let (origin, corner) = (Point::ORIGIN, Point::new(10.0, 0.0));
+    assert_eq!(drawn(&plotter), [(origin, corner), (corner, Point::new(10.0, 5.0))]);
+    let line = String::from("M801");
+    assert_eq!(kinds(&plotter), [AnomalyKind::LineRefused { line, code: 0 }]);
+    let counts = plotter.line_counts().unwrap();
+    assert_eq!((counts.refused, counts.assumed), (1, 0));
+    // It is led home behind what it draws, and tells where it is.
+    let talk = Talk::of("marlin").line("M3").line("G1 X5").line("G28 X").host("M114\n");
+    let plotter = talk.says("X:1.00 Y:0.00 Z:0.00 E:0.00 Count X:80 Y:0 Z:0\nok\n").end();
+    assert_eq!(drawn(&plotter), [(origin, Point::new(5.0, 0.0))]);
+    assert!(matches!(kinds(&plotter)[..], [AnomalyKind::ReportedElsewhere { .. }]));
+}
+
+#[test]
+fn hpgl_is_drawn_from_its_commands() {
+    let talk = Talk::of("hpgl").host("IN;SP2;PU400,0;PD800,0,800,400;PU;\u{1b}.B").says("1024\r");
+    let plotter = talk.host("XX;PA0,0;OA;").says("0,0,0\r").end();
+    let corner = Point::new(20.0, 0.0);
+    assert_eq!(drawn(&plotter), [(Point::new(10.0, 0.0), corner), (corner, Point::new(20.0, 10.0))]);
+    assert_eq!(kinds(&plotter), [AnomalyKind::LineNotUnderstood { line: String::from("XX") }]);
+    // Nothing tells that they are drawn: three ways, and the one back.
+    assert_eq!(plotter.line_counts().unwrap().assumed, 4);
+}
+
+/// The recording of a line alone shows what the steps of the machine show.
+#[test]
+fn a_recorded_line_leads_where_the_steps_of_its_machine_go() {
+    for (name, end) in [("marlin", Point::new(4.0, 1.0)), ("hpgl", Point::new(4.0, 2.0))] {
+        let path = format!("{}/tests/golden/simulated.{name}.plog", env!("CARGO_MANIFEST_DIR"));
+        let ends = |with_steps: bool| {
+            let reader = plotter_replay::log::open(std::path::Path::new(&path)).unwrap();
+            let mut plotter = VirtualPlotter::new(PlotterSettings::from_header(reader.header()).unwrap());
+            for record in reader.map(Result::unwrap) {
+                if with_steps || !matches!(record.event, Event::Edge { .. } | Event::Pen(_)) {
+                    plotter.push(&record);
+                }
+            }
+            plotter.finish();
+            drawn(&plotter)
+        };
+        let lines = ends(false);
+        assert_eq!(lines.last().map(|line| line.1), Some(end), "{name}: {lines:?}");
+        let near = |a: Point, b: Point| a.distance(b) < 0.051; // a step
+        let steps = ends(true);
+        let same = lines.iter().zip(&steps).all(|(a, b)| near(a.0, b.0) && near(a.1, b.1));
+        assert!(steps.len() == lines.len() && same, "{name}: {lines:?}, {steps:?}");
+    }
+}
+
 #[test]
 fn an_unknown_protocol_is_none_of_these() {
     let error = PlotterSettings::from_header(&Header::new().with_text("protocol", "klipper")).unwrap_err();
@@ -164,7 +223,7 @@ fn an_unknown_protocol_is_none_of_these() {
 #[test]
 fn any_bytes_are_taken() {
     let mut random = plotter_motion::SplitMix64::new(43);
-    for protocol in ["grbl", "mdraw"] {
+    for protocol in ["grbl", "mdraw", "marlin", "hpgl"] {
         let mut talk = Talk::of(protocol);
         for n in 0..20_000 {
             let words = [
@@ -182,6 +241,13 @@ fn any_bytes_are_taken() {
                 "M3",
                 "OK",
                 "\r",
+                "N7 ",
+                "*9",
+                "Resend: 7\n",
+                "G28",
+                "start\n",
+                "PD",
+                "1,2;",
             ];
             let bytes = match random.below(4) {
                 0 => vec![u8::try_from(random.below(256)).unwrap()],

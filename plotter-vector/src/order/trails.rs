@@ -691,15 +691,19 @@ mod tests {
     fn ends_between_which_the_pen_has_drawn_are_joined_and_others_are_not() {
         // A stem that goes into a stroke from above and one that leaves it below, by a pen of 3 px.
         let stems: [&[(f64, f64)]; 3] =
-            [&[(0.0, 50.0), (90.0, 50.0)], &[(40.0, 10.0), (40.0, 48.5)], &[(46.0, 51.5), (46.0, 90.0)]];
+            [&[(0.0, 50.0), (90.0, 50.0)], &[(40.0, 10.0), (40.0, 49.6)], &[(46.0, 50.4), (46.0, 90.0)]];
         let over_ink = |drawing: &Drawing| {
             trails(&strokes_of(drawing), &Joining { corner_gap_px: 3.0, pen_px: 3.0, ..TIGHT }).1.len()
         };
         assert_eq!(over_ink(&drawing(&stems)), 2);
         // Without the stroke there is paper between them, and far apart they are two for good.
         assert_eq!(over_ink(&drawing(&stems[1..])), 2);
-        let far: [&[(f64, f64)]; 3] = [stems[0], stems[1], &[(53.0, 51.5), (53.0, 90.0)]];
+        let far: [&[(f64, f64)]; 3] = [stems[0], stems[1], &[(53.0, 50.4), (53.0, 90.0)]];
         assert_eq!(over_ink(&drawing(&far)), 3);
+        // In the ink of the stroke, but beside its middle, the way would be a line of its own.
+        let beside: [&[(f64, f64)]; 3] =
+            [stems[0], &[(40.0, 10.0), (40.0, 48.5)], &[(46.0, 51.5), (46.0, 90.0)]];
+        assert_eq!(over_ink(&drawing(&beside)), 3);
         // Dashes stay apart where a pixel of paper lies between them.
         let dashes: [&[(f64, f64)]; 2] = [&[(0.0, 5.0), (20.0, 5.0)], &[(24.0, 5.0), (40.0, 5.0)]];
         assert_eq!(over_ink(&drawing(&dashes)), 2);

@@ -107,14 +107,7 @@ pub fn ours(joint: u64, crossings: &[Crossing], noise: SensorNoise, fit: &RigidF
     let mut sensed = SensedJoint::new(crossings, &truth, Optics::default(), noise, joint);
     let mut search = MarkSearch::new(crossings, SearchSettings::default());
     sensed.run(&mut search).ok()?;
-    let estimate = fit
-        .estimate(crossings, search.found().ok()?)
-        .map_err(|e| {
-            if std::env::var("WHY").is_ok() {
-                println!("WHY {joint} {e}")
-            }
-        })
-        .ok()?;
+    let estimate = fit.estimate(crossings, search.found().ok()?).ok()?;
     Some(Told {
         discrepancy_mm: discrepancy_mm(&truth, &estimate.transform),
         ends_mm2: ends_mm2(&truth, &estimate.transform),
