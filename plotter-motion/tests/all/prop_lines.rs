@@ -473,7 +473,9 @@ proptest! {
 }
 
 proptest! {
-    /// HPGL rounds places to 0.025 mm: up to 0.018 mm beside the circle, at the ends of its arcs as well.
+    /// HPGL rounds places to 0.025 mm: up to 0.018 mm beside the circle, at the ends of its arcs as well. So an
+    /// arc through one of them may be 0.036 mm beside the next: with 0.03 mm one circle of 5,000 begins with a
+    /// line.
     #[test]
     fn a_circle_rounded_to_units_is_two_arcs_at_most(x in 60.0..61.0_f64, y in 60.0..61.0_f64, radius in 2.0..30.0_f64, begin in 0.0..TAU, lines in 120..400_u16) {
         let round = |mm: f64| (mm / 0.025).round() * 0.025;
@@ -482,11 +484,14 @@ proptest! {
             (0..=lines).map(|line| p(round(x + radius * at(line).cos()), round(y + radius * at(line).sin()))).collect();
         places.dedup();
         let before = of([Stroke::through(places).unwrap()]);
-        let mut after = before.clone();
-        prop_assert!(after.fit_arcs(0.03) <= 2);
-        prop_assert!(after.strokes[0].segments.len() <= 2);
-        let (old, new) = (pieces(&before, 0), pieces(&after, 0));
-        prop_assert!(farthest_mm(&old, &new) <= 0.03 + ROUNDING_MM && farthest_mm(&new, &old) <= 0.03 + ROUNDING_MM);
+        for (tolerance, most) in [(0.036, 2), (0.03, 4)] {
+            let mut after = before.clone();
+            prop_assert!(after.fit_arcs(tolerance) <= most);
+            prop_assert!(after.strokes[0].segments.len() <= most);
+            let (old, new) = (pieces(&before, 0), pieces(&after, 0));
+            let off_mm = farthest_mm(&old, &new).max(farthest_mm(&new, &old));
+            prop_assert!(off_mm <= tolerance + ROUNDING_MM, "{} mm", off_mm);
+        }
     }
 }
 

@@ -212,7 +212,7 @@ impl Info {
                 if plotter.is_linked() { " (where the machine told its place: every 20 ms)" } else { "" };
             say(out, &format!("contour error: rms {:.4} mm, max {:.4} mm{told}", error.rms_mm, error.max_mm));
         }
-        let is_text = plotter.line_counts().is_some() || plotter.settings().counted_by == CountedBy::Steps;
+        let is_text = plotter.line_counts().is_some() || plotter.settings().counted_by == CountedBy::Ebb;
         if !is_text
             && controller.bytes > 0
             && counts.iter().any(|&(name, count)| name == "edges" && count == 0)

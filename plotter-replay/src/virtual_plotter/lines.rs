@@ -167,18 +167,14 @@ impl Lines {
         if is_wrong && self.tongue == Tongue::Grbl {
             return Err(());
         }
-        let upper = text.to_ascii_uppercase();
-        let has = |word: &[u8]| {
-            upper.windows(word.len()).enumerate().any(|(at, window)| {
-                window == word && !upper.get(at + word.len()).is_some_and(u8::is_ascii_digit)
-            })
-        };
-        let waiting: &[&[u8]] = match self.tongue {
-            Tongue::Grbl => &[b"G4", b"G04", b"M2", b"M02", b"M30"],
+        let waiting: &[(u8, u16)] = match self.tongue {
+            Tongue::Grbl => &[(b'G', 4), (b'M', 2), (b'M', 30)],
             Tongue::MDraw | Tongue::Hpgl => &[],
-            Tongue::Marlin => &[b"G4", b"G28", b"M0", b"M1", b"M3", b"M4", b"M5", b"M400"],
+            Tongue::Marlin => {
+                &[(b'G', 4), (b'G', 28), (b'M', 0), (b'M', 1), (b'M', 3), (b'M', 4), (b'M', 5), (b'M', 400)]
+            }
         };
-        Ok((ops, waiting.iter().any(|word| has(word))))
+        Ok((ops, has_word(text, waiting)))
     }
 }
 
@@ -231,6 +227,24 @@ impl Lines {
             _ => Vec::new(),
         }
     }
+}
+
+/// Whether a line has one of these words of G-code: a letter in capitals, and a whole number.
+fn has_word(line: &[u8], words: &[(u8, u16)]) -> bool {
+    line.iter().enumerate().any(|(at, letter)| {
+        let letter = letter.to_ascii_uppercase();
+        if !words.iter().any(|word| word.0 == letter) {
+            return false;
+        }
+        let digits = line.iter().skip(at + 1).skip_while(|byte| **byte == b' ').map_while(|byte| {
+            let digit = u16::from(byte.wrapping_sub(b'0'));
+            (digit < 10).then_some(digit)
+        });
+        let number = digits.fold(None, |number: Option<u16>, digit| {
+            Some(number.unwrap_or(0).saturating_mul(10).saturating_add(digit))
+        });
+        number.is_some_and(|number| words.contains(&(letter, number)))
+    })
 }
 
 /// What a report of Grbl says: its state, and where it is.
@@ -357,10 +371,16 @@ impl VirtualPlotter {
             }
             return;
         }
-        let answer = core::mem::take(&mut lines.answer);
-        if answer.is_empty() {
+        if lines.answer.is_empty() {
             return;
         }
+        // By far the most of them, without a copy.
+        if lines.answer == b"ok" && lines.tongue == Tongue::Grbl {
+            lines.answer.clear();
+            self.answered(true, "ok");
+            return;
+        }
+        let answer = core::mem::take(&mut lines.answer);
         let answer = String::from_utf8_lossy(&answer).trim().to_owned();
         match lines.tongue {
             Tongue::Grbl => self.grbl_answer(&answer),
@@ -432,11 +452,11 @@ impl VirtualPlotter {
             return;
         }
         lines.counts.accepted = lines.counts.accepted.saturating_add(1);
-        let upper = line.trim_ascii().to_ascii_uppercase();
+        let text = line.trim_ascii();
         let [x_homes, y_homes] = match lines.tongue {
-            Tongue::Grbl => [upper == b"$H"; 2],
-            Tongue::MDraw => [upper.starts_with(b"G28"); 2],
-            Tongue::Marlin => marlin_lines::homed_axes(&upper),
+            Tongue::Grbl => [text.eq_ignore_ascii_case(b"$H"); 2],
+            Tongue::MDraw => [text.to_ascii_uppercase().starts_with(b"G28"); 2],
+            Tongue::Marlin => marlin_lines::homed_axes(&text.to_ascii_uppercase()),
             Tongue::Hpgl => [false; 2],
         };
         if x_homes || y_homes {
@@ -752,5 +772,16 @@ mod tests {
         assert_eq!(report("ok"), None);
         assert_eq!(told_place("POS X3.00 Y4.00"), Some(Point::new(3.0, 4.0)));
         assert_eq!(told_place("POS X3.00"), None);
+    }
+
+    #[test]
+    fn words_are_found_with_their_whole_number() {
+        let waiting = [(b'G', 4), (b'M', 30)];
+        for line in [&b"G4 P1"[..], b"G04P0", b"N10 g4", b"M30", b"X1 M 030"] {
+            assert!(has_word(line, &waiting), "{line:?}");
+        }
+        for line in [&b"G40"[..], b"G1 X4", b"M3", b"M300 S4", b"G", b"", b"M99999999930"] {
+            assert!(!has_word(line, &waiting), "{line:?}");
+        }
     }
 }

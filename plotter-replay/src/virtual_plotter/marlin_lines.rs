@@ -101,7 +101,7 @@ mod tests {
             (sent.number, String::from_utf8(sent.text).unwrap())
         };
         assert_eq!(of("N12 G1 X10 Y5*34"), (Some(12), String::from("G1 X10 Y5")));
-        assert_eq!(of("G1 X10 ; to the right"), (None, String::from("G1 X10 ")));
+        assert_eq!(of("G1 X10 ; to the right"), (None, String::from("G1 X10")));
         assert_eq!(of("; a comment"), (None, String::new()));
         assert_eq!(of("M117 No numbers"), (None, String::from("M117 No numbers")));
     }

@@ -20,6 +20,7 @@
 
 mod anomaly;
 mod drawing;
+mod ebb_session;
 mod host_digits;
 mod hpgl_text;
 mod leg;
@@ -37,6 +38,7 @@ pub use noted::Noted;
 pub use settings::{CountedBy, PlotterSettings, SettingsError};
 
 use crate::log::{Event, Record};
+use crate::player::{Controller as _, EbbBoard};
 use core::time::Duration;
 use drawing::Drawing;
 use host_digits::{Decoded, HostDigits};
@@ -81,6 +83,8 @@ pub struct VirtualPlotter {
     linked: Linked,
     /// Of a session of text lines.
     lines: Option<Lines>,
+    /// That of a session of the EBB's, until the log has steps of its own.
+    board: Option<Box<EbbBoard>>,
     drawing: Option<Drawing>,
     pen: Pen,
     pen_recorded: bool,
@@ -117,10 +121,10 @@ impl VirtualPlotter {
             CountedBy::MDraw => Some(lines(Tongue::MDraw)),
             CountedBy::Marlin => Some(lines(Tongue::Marlin)),
             CountedBy::Hpgl => Some(lines(Tongue::Hpgl)),
-            CountedBy::Answers | CountedBy::Edges | CountedBy::Link | CountedBy::Steps => None,
+            CountedBy::Answers | CountedBy::Edges | CountedBy::Link | CountedBy::Ebb => None,
         };
         // Lines, or the machine, say where the pen is lifted.
-        let is_up = lines.is_some() || settings.counted_by == CountedBy::Steps;
+        let is_up = lines.is_some() || settings.counted_by == CountedBy::Ebb;
         let pen = if is_up { Pen::Up } else { Pen::Down };
         Self {
             settings,
@@ -131,6 +135,7 @@ impl VirtualPlotter {
                 Speech::Digits
             }),
             lines,
+            board: (settings.counted_by == CountedBy::Ebb).then(|| Box::new(EbbBoard::switched_on())),
             drawing: None,
             pen,
             pen_recorded: false,
@@ -181,6 +186,7 @@ impl VirtualPlotter {
 
     /// Takes the next record.
     pub fn push(&mut self, record: &Record) {
+        self.run_board(record.time);
         self.now = record.time;
         match &record.event {
             Event::Host(bytes) => bytes.iter().for_each(|&byte| self.host_byte(byte)),
@@ -195,24 +201,27 @@ impl VirtualPlotter {
                 self.count(*axis, *sign);
             }
             Event::Edge { axis, sign }
-                if self.lines.is_some() || self.settings.counted_by == CountedBy::Steps =>
+                if self.lines.is_some() || self.settings.counted_by == CountedBy::Ebb =>
             {
+                self.board = None; // a simulated one has made these
                 if self.slack.moves(self.settings.play, *axis, *sign) {
                     self.count(*axis, *sign);
                     self.line_step();
                 }
             }
+            Event::Estop(pressed) => {
+                if let Some(board) = &mut self.board {
+                    board.emergency_stop(record.time, *pressed);
+                }
+            }
             // Edges come again as pulse bytes; the others do not move the pen.
-            Event::Edge { .. }
-            | Event::Drive { .. }
-            | Event::Switch { .. }
-            | Event::Estop(_)
-            | Event::Note(_) => {}
+            Event::Edge { .. } | Event::Drive { .. } | Event::Switch { .. } | Event::Note(_) => {}
         }
     }
 
     /// The log is over: takes what is left of it.
     pub fn finish(&mut self) {
+        self.finish_board();
         self.finish_lines();
         let decoded = self.host.finish();
         self.take(decoded);
@@ -384,7 +393,8 @@ impl VirtualPlotter {
             self.host_line_byte(byte);
             return;
         }
-        if self.settings.counted_by == CountedBy::Steps {
+        if self.settings.counted_by == CountedBy::Ebb {
+            self.ebb_byte(byte);
             return;
         }
         self.listen();
@@ -401,7 +411,7 @@ impl VirtualPlotter {
             self.controller_line_byte(byte);
             return;
         }
-        if self.settings.counted_by == CountedBy::Steps {
+        if self.settings.counted_by == CountedBy::Ebb {
             return;
         }
         self.listen();

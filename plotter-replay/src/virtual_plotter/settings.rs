@@ -67,9 +67,9 @@ pub enum CountedBy {
     /// Commands of HPGL, which no plotter answers, as soon as so many have followed that its buffer cannot
     /// hold them: the protocol `hpgl`. Or its steps, where the log has them.
     Hpgl,
-    /// The machine's steps alone, of a session whose bytes are not read here: the protocol `ebb`. A log of
-    /// the line, which has no steps, shows nothing.
-    Steps,
+    /// Commands of the EBB, whose steps the simulated board makes of them at the times at which they came:
+    /// the protocol `ebb`. Or its steps, where the log has them.
+    Ebb,
 }
 
 impl Default for PlotterSettings {
@@ -96,6 +96,10 @@ impl Default for PlotterSettings {
 
 /// A step of a stepper plotter whose log does not say how long it is, mm: that of the documented machine.
 const STEP_MM: f64 = 1.0 / 87.58;
+
+/// A sixteenth of a step of an AxiDraw's motors, mm: 2032 of them move its belt by an inch (its makers'
+/// documentation of the command SM).
+const AXIDRAW_STEP_MM: f64 = 25.4 / 2032.0;
 
 /// A number in a log's header that makes no sense.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,9 +131,14 @@ impl PlotterSettings {
         let pause = |n| (0.0..=3.6e6).contains(&n);
         let base = Self::default();
         let counts = |n: f64| (0.0..=100_000.0).contains(&n);
+        let says_nothing = !header.has("belt_signs") && !header.has("x_mm_per_pulse");
+        let is_axidraw = header.text("protocol") == Some("ebb") && says_nothing;
         let belt = match header.text("belt_signs") {
             Some("direction-table") => Some(BeltSigns::DirectionTable),
             Some("tracking-equations") => Some(BeltSigns::TrackingEquations),
+            // An AxiDraw, if nothing is said of the machine: its makers' programs send both motors forwards for
+            // a way to the right, and the first one for a way down.
+            None if is_axidraw => Some(BeltSigns::DirectionTable),
             None if !header.has("belt_signs") => None,
             _ => {
                 let expected = "direction-table or tracking-equations";
@@ -143,7 +152,7 @@ impl PlotterSettings {
             Some("mdraw") => CountedBy::MDraw,
             Some("marlin") => CountedBy::Marlin,
             Some("hpgl") => CountedBy::Hpgl,
-            Some("ebb") => CountedBy::Steps,
+            Some("ebb") => CountedBy::Ebb,
             Some("digits" | "messages") => CountedBy::Answers,
             None if !header.has("protocol") => CountedBy::Answers,
             _ => {
@@ -153,8 +162,12 @@ impl PlotterSettings {
             }
         };
         let is_lines =
-            matches!(counted_by, CountedBy::Grbl | CountedBy::MDraw | CountedBy::Marlin | CountedBy::Steps);
-        let scale_mm = |mm: f64| if is_lines { STEP_MM } else { mm };
+            matches!(counted_by, CountedBy::Grbl | CountedBy::MDraw | CountedBy::Marlin | CountedBy::Ebb);
+        let scale_mm = |mm: f64| match (is_axidraw, is_lines) {
+            (true, _) => AXIDRAW_STEP_MM,
+            (false, true) => STEP_MM,
+            (false, false) => mm,
+        };
         let tolerance = f64::from(base.reached_tolerance_counts);
         let tolerance = number("reached_tolerance_counts", "0 to 100000 counts", counts, tolerance)?;
         let scale = "a length above 0 and up to 1000 mm";
