@@ -1,5 +1,5 @@
-//! Sessions of text lines, Grbl's, mDraw's and Marlin's, as the virtual plotter draws them: what was sent, as far as
-//! the machine has taken it and says to be.
+//! Sessions of text, of Grbl, mDraw, Marlin, HPGL and EBB, as the virtual plotter draws them: what was sent, as
+//! far as the machine has taken it and says to be.
 
 use plotter_motion::{Axis, Direction, Pen, Point};
 use plotter_replay::log::{Event, Header, Record};
