@@ -706,7 +706,9 @@ fn a_machine_of_targets_is_led_by_hand_on_two_pages_and_changes_its_pen() {
     // A button that has the focus keeps the keys to itself.
     browser.eval("document.activeElement.blur()");
     browser.key("+", 187); // the next target only
-    browser.wait_for("document.body.dataset.state === 'paused' && last.reached === 1");
+    for page in [&mut browser, &mut other] {
+        page.wait_for("document.body.dataset.state === 'paused' && last.reached === 1");
+    }
     other.click("#resume");
     // The other pen is waited for, by its name.
     browser.wait_for(
