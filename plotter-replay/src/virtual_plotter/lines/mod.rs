@@ -11,10 +11,14 @@
 //!
 //! Where the log has the motors' steps, they are the way, and the lines only say where it should go.
 
-use super::hpgl_text::HpglText;
-use super::{AnomalyKind, Reached, VirtualPlotter, marlin_lines};
+mod carry_out;
+mod hpgl_text;
+mod marlin;
+
+use super::{AnomalyKind, Reached, VirtualPlotter};
 use core::time::Duration;
-use plotter_motion::gcode::{Interpreter, PenConvention, ReadOptions, Reader, ServoCommand, Spacing};
+use hpgl_text::HpglText;
+use plotter_motion::gcode::{Interpreter, PenConvention, ReadOptions, Reader, Spacing};
 use plotter_motion::{Pen, PlotOp, Point, Segment, StepPoint, toolpath::chords};
 use std::collections::VecDeque;
 
@@ -63,16 +67,16 @@ const PASSED_STEPS: f64 = 2.0;
 
 /// A line of the host that is not answered yet.
 #[derive(Clone, Debug)]
-pub(super) struct Sent {
+struct Sent {
     /// Its number, where it has one.
-    pub(super) number: Option<u64>,
+    number: Option<u64>,
     /// What it says, without number and checksum.
-    pub(super) text: Vec<u8>,
+    text: Vec<u8>,
 }
 
 /// A straight move that is not made yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Planned {
+struct Planned {
     pen: Pen,
     number: u8,
     to: Point,
@@ -87,23 +91,23 @@ pub(super) struct Lines {
     reader: Reader,
     interpreter: Interpreter,
     /// What HPGL is read by.
-    pub(super) hpgl: Option<Box<HpglText>>,
+    hpgl: Option<Box<HpglText>>,
     /// The host's line so far.
     line: Vec<u8>,
     ended_by_return: bool,
-    pub(super) unanswered: VecDeque<Sent>,
+    unanswered: VecDeque<Sent>,
     /// The machine's line so far.
     answer: Vec<u8>,
     /// Whether a machine that answers all lines alike has said that the one under way is wrong.
-    pub(super) is_refused: bool,
+    is_refused: bool,
     /// Whether the next answer is to no line: Marlin has asked for one again.
-    pub(super) asks_again: bool,
-    pub(super) planned: VecDeque<Planned>,
+    asks_again: bool,
+    planned: VecDeque<Planned>,
     /// From when on what is planned was being drawn.
     since: Duration,
     /// How near the steps have come to the place that is under way, mm.
     nearest_mm: f64,
-    pub(super) knows_place: bool,
+    knows_place: bool,
     last_report: Option<Duration>,
     last_answer: Option<Duration>,
     has_steps: bool,
@@ -140,111 +144,6 @@ impl Lines {
             counts: LineCounts::default(),
         }
     }
-
-    /// A line carried out: what it draws, and whether all before is drawn when it is answered.
-    fn carry_out(&mut self, line: &[u8]) -> Result<(Vec<PlotOp>, bool), ()> {
-        let text = line.trim_ascii();
-        if self.tongue == Tongue::MDraw {
-            return Ok((self.carry_out_mdraw(text), false));
-        }
-        let (text, is_jog) = match text.strip_prefix(b"$J=") {
-            Some(jog) if self.tongue == Tongue::Grbl => (jog, true),
-            None if text.first() == Some(&b'$') => return Ok((Vec::new(), false)),
-            _ => (text, false),
-        };
-        let before = self.interpreter;
-        if is_jog {
-            // It has modes of its own, and the pen stays as it is.
-            let (moves, is_wrong) = self.interpret(&[b"G1".as_slice(), text].concat());
-            let at = self.interpreter.modes().position;
-            self.interpreter = before;
-            self.interpreter.stand_at(at);
-            let moves = moves.into_iter().filter_map(PlotOp::target).map(|to| PlotOp::Travel { to });
-            return if is_wrong { Err(()) } else { Ok((moves.collect(), false)) };
-        }
-        let (ops, is_wrong) = self.interpret(text);
-        // Marlin says of itself what it does not know, and knows far more than draws.
-        if is_wrong && self.tongue == Tongue::Grbl {
-            return Err(());
-        }
-        let waiting: &[(u8, u16)] = match self.tongue {
-            Tongue::Grbl => &[(b'G', 4), (b'M', 2), (b'M', 30)],
-            Tongue::MDraw | Tongue::Hpgl => &[],
-            Tongue::Marlin => {
-                &[(b'G', 4), (b'G', 28), (b'M', 0), (b'M', 1), (b'M', 3), (b'M', 4), (b'M', 5), (b'M', 400)]
-            }
-        };
-        Ok((ops, has_word(text, waiting)))
-    }
-}
-
-impl Lines {
-    /// What the interpreter makes of a line, and whether it does not understand it.
-    fn interpret(&mut self, text: &[u8]) -> (Vec<PlotOp>, bool) {
-        let (mut ops, mut is_wrong) = (Vec::new(), false);
-        for &byte in text.iter().chain(b"\n") {
-            let Some(block) = self.reader.push(byte) else { continue };
-            if self.interpreter.push(block).is_err() {
-                continue; // cannot be: all of the line before has been taken
-            }
-            while let Some(op) = self.interpreter.next_op() {
-                match op {
-                    Ok(op) => ops.push(op),
-                    Err(error) => is_wrong |= !error.is_notice(),
-                }
-            }
-        }
-        (ops, is_wrong)
-    }
-
-    /// The same of a line of mDraw's, whose machine does nothing where it does not understand, and to which
-    /// some words are others than elsewhere.
-    fn carry_out_mdraw(&mut self, line: &[u8]) -> Vec<PlotOp> {
-        let text = String::from_utf8_lossy(line).to_ascii_uppercase();
-        let mut words = text.split_whitespace();
-        match words.next() {
-            Some("G0" | "G00" | "G1" | "G01" | "G90" | "G91" | "M1") => self.interpret(line).0,
-            // A laser that burns is a pen that is down.
-            Some("M4") => {
-                let burns =
-                    words.next().and_then(|power| power.parse().ok()).is_some_and(|power: f64| power > 0.0);
-                self.interpret(if burns { b"M1 90" } else { b"M1 160" }).0
-            }
-            Some("M2") => {
-                let degrees = |letter: char| {
-                    let number = |word: &str| word.strip_prefix(letter)?.parse().ok();
-                    text.split_whitespace().find_map(number).filter(|deg: &f64| (0.0..=180.0).contains(deg))
-                };
-                if let (Some(up), Some(down)) = (degrees('U'), degrees('D')) {
-                    let at = self.interpreter.modes().position;
-                    let pen = PenConvention::Servo { command: ServoCommand::M1, up, down };
-                    self.interpreter =
-                        Interpreter::with_options(ReadOptions { pen, ..ReadOptions::default() });
-                    self.interpreter.stand_at(at);
-                }
-                Vec::new()
-            }
-            _ => Vec::new(),
-        }
-    }
-}
-
-/// Whether a line has one of these words of G-code: a letter in capitals, and a whole number.
-fn has_word(line: &[u8], words: &[(u8, u16)]) -> bool {
-    line.iter().enumerate().any(|(at, letter)| {
-        let letter = letter.to_ascii_uppercase();
-        if !words.iter().any(|word| word.0 == letter) {
-            return false;
-        }
-        let digits = line.iter().skip(at + 1).skip_while(|byte| **byte == b' ').map_while(|byte| {
-            let digit = u16::from(byte.wrapping_sub(b'0'));
-            (digit < 10).then_some(digit)
-        });
-        let number = digits.fold(None, |number: Option<u16>, digit| {
-            Some(number.unwrap_or(0).saturating_mul(10).saturating_add(digit))
-        });
-        number.is_some_and(|number| words.contains(&(letter, number)))
-    })
 }
 
 /// What a report of Grbl says: its state, and where it is.
@@ -333,7 +232,7 @@ impl VirtualPlotter {
     fn host_line(&mut self, line: Vec<u8>) {
         let Some(lines) = &mut self.lines else { return };
         let sent = match lines.tongue {
-            Tongue::Marlin => marlin_lines::sent(&line),
+            Tongue::Marlin => marlin::sent(&line),
             _ => Sent { number: None, text: line },
         };
         let is_empty = sent.text.trim_ascii().is_empty();
@@ -436,7 +335,7 @@ impl VirtualPlotter {
     }
 
     /// The line that has waited longest is answered.
-    pub(super) fn answered(&mut self, is_good: bool, answer: &str) {
+    fn answered(&mut self, is_good: bool, answer: &str) {
         let now = self.now;
         let Some(lines) = &mut self.lines else { return };
         lines.last_answer = Some(now);
@@ -456,7 +355,7 @@ impl VirtualPlotter {
         let [x_homes, y_homes] = match lines.tongue {
             Tongue::Grbl => [text.eq_ignore_ascii_case(b"$H"); 2],
             Tongue::MDraw => [text.to_ascii_uppercase().starts_with(b"G28"); 2],
-            Tongue::Marlin => marlin_lines::homed_axes(&text.to_ascii_uppercase()),
+            Tongue::Marlin => marlin::homed_axes(&text.to_ascii_uppercase()),
             Tongue::Hpgl => [false; 2],
         };
         if x_homes || y_homes {
@@ -522,7 +421,6 @@ impl VirtualPlotter {
         let Some(hpgl) = &mut lines.hpgl else { return };
         let Some(read) = hpgl.push(byte) else { return };
         lines.counts.sent = lines.counts.sent.saturating_add(u64::from(read.is_command));
-        lines.counts.accepted = lines.counts.sent;
         if lines.planned.is_empty() {
             lines.since = now;
         }
@@ -633,7 +531,7 @@ impl VirtualPlotter {
     }
 
     /// The machine stands at `at`, and has nothing more to do.
-    pub(super) fn stands_at(&mut self, at: Point) {
+    fn stands_at(&mut self, at: Point) {
         let Some(lines) = &mut self.lines else { return };
         lines.last_report = Some(self.now);
         if !lines.knows_place && lines.planned.is_empty() {
@@ -684,7 +582,7 @@ impl VirtualPlotter {
     }
 
     /// What the machine says of its place is compared with where it should be, and believed.
-    pub(super) fn compare_place(&mut self, at: Point) {
+    fn compare_place(&mut self, at: Point) {
         let reported = self.settings.to_counts(at);
         let off = StepPoint::new(
             reported.x.saturating_sub(self.counted.x),
@@ -698,7 +596,7 @@ impl VirtualPlotter {
     }
 
     /// The recording begins with the pen at `at`.
-    pub(super) fn begins_at(&mut self, at: Point) {
+    fn begins_at(&mut self, at: Point) {
         if let Some(lines) = &mut self.lines {
             lines.knows_place = true;
             lines.interpreter.stand_at(at);
@@ -721,7 +619,7 @@ impl VirtualPlotter {
     }
 
     /// Nothing of what is planned will be drawn.
-    pub(super) fn forget_planned(&mut self) {
+    fn forget_planned(&mut self) {
         if let Some(lines) = &mut self.lines {
             lines.planned.clear();
         }
@@ -772,16 +670,5 @@ mod tests {
         assert_eq!(report("ok"), None);
         assert_eq!(told_place("POS X3.00 Y4.00"), Some(Point::new(3.0, 4.0)));
         assert_eq!(told_place("POS X3.00"), None);
-    }
-
-    #[test]
-    fn words_are_found_with_their_whole_number() {
-        let waiting = [(b'G', 4), (b'M', 30)];
-        for line in [&b"G4 P1"[..], b"G04P0", b"N10 g4", b"M30", b"X1 M 030"] {
-            assert!(has_word(line, &waiting), "{line:?}");
-        }
-        for line in [&b"G40"[..], b"G1 X4", b"M3", b"M300 S4", b"G", b"", b"M99999999930"] {
-            assert!(!has_word(line, &waiting), "{line:?}");
-        }
     }
 }

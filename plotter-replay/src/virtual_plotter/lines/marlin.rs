@@ -10,8 +10,8 @@
 //!
 //! Source: Marlin's documentation of its G-codes; `gcode/queue.cpp` of its source.
 
-use super::lines::Sent;
-use super::{AnomalyKind, VirtualPlotter};
+use super::super::{AnomalyKind, VirtualPlotter};
+use super::Sent;
 use plotter_motion::Point;
 
 /// A line as the host has sent it, without number, checksum and comment.
