@@ -263,7 +263,6 @@ impl Contouring {
             return;
         }
         let Law { along, across, tolerance_counts, period_us, wait, .. } = self.law;
-        let period = self.law.period();
         let (start, target, [ux, uy]) = (self.line.start(), self.line.target(), self.line.direction());
         let point = self.line.at(self.line.plan_s());
 
@@ -285,7 +284,7 @@ impl Contouring {
         let a_along = accel + along.position * (ex * ux + ey * uy) + along.speed * (dx * ux + dy * uy);
         let a_across = across.position * (ey * ux - ex * uy) + across.speed * (dy * ux - dx * uy);
 
-        self.line.go_on(rate, period);
+        self.line.go_on(rate, period_us);
         let (finished, over_us, waits) = (self.line.is_over(), self.line.over_us(), rate < 1.0);
         let rest_x = self.x.rests(finished || ux == 0.0, target.x, tolerance_counts, period_us);
         let rest_y = self.y.rests(finished || uy == 0.0, target.y, tolerance_counts, period_us);
@@ -306,7 +305,7 @@ impl Contouring {
             let duty = push / (model.accel_per_volt * model.supply_v) + leaning;
             axis.drive(duty, if unit == 0.0 { error } else { unit });
         }
-        self.line.settles(rest_x && rest_y, period);
+        self.line.settles(rest_x && rest_y, period_us);
         // Shafts that came to stand far beside the target are led there along a line of their own.
         if let (true, Some(far_x), Some(far_y)) =
             (finished, self.x.stands_far(target.x), self.y.stands_far(target.y))
@@ -346,6 +345,7 @@ impl LineController for Contouring {
         self.predict(now);
         self.x.estimator.no_edge();
         self.y.estimator.no_edge();
+        self.line.catch_up(now, self.law.period_us);
         self.control();
         self.demand()
     }

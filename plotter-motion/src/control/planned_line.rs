@@ -41,10 +41,8 @@ pub struct PlannedLine<C> {
     x: PlannedAxis,
     y: PlannedAxis,
     line: LinePlan,
-    /// When the loop ran last, how far along the plan it was then, and how fast the reference goes on since.
-    run_at: Duration,
+    /// How far along the plan the loop ran last, s.
     run_plan_s: f64,
-    rate: f32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,9 +80,7 @@ impl<C: ContourController> PlannedLine<C> {
             x: axis(settings.x),
             y: axis(settings.y),
             line: LinePlan::at_rest(settings.limits),
-            run_at: Duration::ZERO,
             run_plan_s: 0.0,
-            rate: 1.0,
         }
     }
 
@@ -148,7 +144,7 @@ impl<C: ContourController> PlannedLine<C> {
     }
 
     /// One run of the loop.
-    fn run(&mut self, now: Duration) {
+    fn run(&mut self) {
         if trouble_of(&self.x.led, &self.y.led).is_some_and(|found| found.trouble.stops()) {
             self.x.led.stop();
             self.y.led.stop();
@@ -156,7 +152,6 @@ impl<C: ContourController> PlannedLine<C> {
         }
         let ContouringSettings { tolerance_counts, period_us, .. } = self.settings;
         let wait = Wait { from_counts: self.settings.wait_from_counts, counts: self.settings.wait_counts };
-        let period = self.settings.period();
         let (target, [ux, uy]) = (self.line.target(), self.line.direction());
         let state = self.state(1.0);
         let rate = self.line.rate([state.x.error(), state.y.error()], wait);
@@ -164,8 +159,8 @@ impl<C: ContourController> PlannedLine<C> {
         let demand = self.controller.update(&state);
         (self.x.edge_error, self.y.edge_error) = (None, None);
 
-        (self.run_plan_s, self.rate) = (self.line.plan_s(), rate);
-        self.line.go_on(rate, period);
+        self.run_plan_s = self.line.plan_s();
+        self.line.go_on(rate, period_us);
         let (finished, over_us, waits) = (self.line.is_over(), self.line.over_us(), rate < 1.0);
         let (x, y) = (&mut self.x.led, &mut self.y.led);
         let rest_x = x.rests(finished || ux == 0.0, target.x, tolerance_counts, period_us);
@@ -180,20 +175,20 @@ impl<C: ContourController> PlannedLine<C> {
             let duty = axis.as_described(duty.value(), state.reference_speed) + leaning;
             axis.drive(duty, if unit == 0.0 { state.error() } else { unit });
         }
-        self.line.settles(rest_x && rest_y, period);
+        self.line.settles(rest_x && rest_y, period_us);
         // Shafts that came to stand far beside the target are led there along a line of their own.
         if let (true, Some(far_x), Some(far_y)) =
             (finished, self.x.led.stands_far(target.x), self.y.led.stands_far(target.y))
             && (far_x || far_y)
         {
             self.line.from(self.position());
-            self.begin(now);
+            self.begin();
         }
     }
 
     /// The control law begins with a line that is planned.
-    fn begin(&mut self, now: Duration) {
-        (self.run_plan_s, self.run_at) = (0.0, now);
+    fn begin(&mut self) {
+        self.run_plan_s = 0.0;
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         self.controller.start(self.line.duration_s() as f32);
     }
@@ -226,14 +221,12 @@ impl<C: ContourController> LineController for PlannedLine<C> {
             axis.estimator.forget();
             axis.start();
         }
-        self.begin(now);
+        self.begin();
         self.demand()
     }
 
     fn edge(&mut self, now: Duration, axis: Axis, direction: Direction) -> Demand {
-        let since_run = now.saturating_sub(self.run_at).min(self.settings.period());
-        let plan_s = self.run_plan_s + since_run.as_secs_f64() * f64::from(self.rate);
-        let reference = self.line.at(plan_s).distance_mm;
+        let reference = self.line.at(self.line.plan_s_at(now, self.run_plan_s)).distance_mm;
         let (start, [ux, uy]) = (self.line.start(), self.line.direction().map(f64::from));
         match axis {
             Axis::X => self.x.edge(now, direction, start.x, reference * ux),
@@ -246,8 +239,8 @@ impl<C: ContourController> LineController for PlannedLine<C> {
         self.predict(now);
         self.x.led.estimator.no_edge();
         self.y.led.estimator.no_edge();
-        self.run_at = now;
-        self.run(now);
+        self.line.catch_up(now, self.settings.period_us);
+        self.run();
         self.demand()
     }
 
