@@ -38,6 +38,8 @@ mod program_command;
 mod real_files;
 mod rooms;
 mod round_trip;
+#[path = "../../../plotter-motion/tests/all/sampled.rs"]
+mod sampled;
 mod stepper_command;
 mod told_commands;
 mod trace_command;

@@ -2,6 +2,7 @@
 
 use crate::built_example;
 use crate::papers::assert_in;
+use crate::sampled::sampled;
 
 use built_example::{complaint, data, machine, run_example};
 use serde_json::Value;
@@ -167,13 +168,12 @@ fn what_is_wrong_is_said_in_one_line() {
 #[ignore = "24 drawings: two minutes on two cores in release, run by .ci/run"]
 fn every_error_is_kept_on_every_machine_and_less_takes_longer() {
     const ASKED_MM: [f64; 4] = [1.0, 0.5, 0.2, 0.1];
-    let drawings = ["flag.png", "technical.png"];
-    let mut cases = Vec::new();
-    for machine in MACHINES {
-        for drawing in drawings {
-            cases.extend(ASKED_MM.map(|asked_mm| (machine, drawing, asked_mm)));
-        }
-    }
+    let drawn = MACHINES
+        .into_iter()
+        .flat_map(|machine| ["flag.png", "technical.png"].map(|drawing| (machine, drawing)));
+    let cases: Vec<_> = sampled(drawn)
+        .flat_map(|(machine, drawing)| ASKED_MM.map(|asked_mm| (machine, drawing, asked_mm)))
+        .collect();
     // Two at a time.
     let queue = Mutex::new(cases.iter().copied().enumerate().rev().collect::<Vec<_>>());
     let (done, results) = mpsc::channel();

@@ -2,6 +2,7 @@
 //! that comes in time. Beside it the same controller in one piece, whose main loop is always there.
 
 use crate::drawings;
+use crate::sampled::sampled;
 use crate::stepper_bench;
 
 use core::time::Duration;
@@ -726,7 +727,7 @@ fn as_text(ops: &[PlotOp]) -> String {
 #[test]
 #[ignore = "long: .ci/run has it in release"]
 fn every_step_of_the_measured_drawings_is_at_its_tick() {
-    for drawing in drawings::built().into_iter().chain(drawings::real()) {
+    for drawing in sampled(drawings::built().into_iter().chain(drawings::real())) {
         let text = as_text(&drawing.ops);
         for (planner, mode) in modes().into_iter().zip(["exact", "tolerance", "s-curve", "tolerance s-curve"])
         {

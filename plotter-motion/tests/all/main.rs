@@ -91,6 +91,7 @@ mod prop_stepper_plotter;
 mod prop_testbed;
 mod prop_tuning;
 mod real_files;
+mod sampled;
 mod serde_plot_ops;
 #[cfg(feature = "serde")]
 mod serde_settings;

@@ -10,6 +10,7 @@
 use crate::auditor::{planned, run};
 use crate::drawings::{self, Drawing};
 use crate::figure::Figure;
+use crate::sampled::sampled;
 use plotter_motion::{
     MachineConfig, PathMode, Pen, PlannerSettings, PlotOp, Point, StepPair, Vec2,
     planner::{AccelLimit, PlanError},
@@ -345,7 +346,7 @@ fn jobs_of_chance_keep_the_jerk_with_any_limits() {
 fn table_of_whole_drawings() {
     on_a_large_stack(|| {
         println!("| | s | of the acceleration | of the jerk | pen from drawing, mm | drawing from pen, mm |");
-        for drawing in drawings::built().into_iter().chain(drawings::real()) {
+        for drawing in sampled(drawings::built().into_iter().chain(drawings::real())) {
             let seen = check(&drawing, within(TOLERANCE_MM), JERK_MM_S3);
             println!(
                 "| {} | {:.2} | {:.3} | {:.3} | {:.4} | {:.4} |",

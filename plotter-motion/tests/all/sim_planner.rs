@@ -7,6 +7,7 @@
 
 use crate::auditor;
 use crate::drawings;
+use crate::sampled::sampled;
 
 use auditor::{Audit, Lens, audit, audit_touched, planned};
 use core::time::Duration;
@@ -101,10 +102,7 @@ fn arcs_are_run_as_arcs_within_every_limit() {
 #[test]
 #[ignore = "two minutes in a release build: .ci/run runs it"]
 fn whole_drawings_keep_every_limit() {
-    for drawing in drawings::built() {
-        check(&drawing, FINE);
-    }
-    for drawing in drawings::real() {
+    for drawing in sampled(drawings::built().into_iter().chain(drawings::real())) {
         check(&drawing, if drawing.name == "Cassini" { MIDDLE } else { FINE });
     }
 }
@@ -144,7 +142,7 @@ fn chance(random: &mut impl FnMut() -> f64) -> (PlannerSettings, Lens) {
 }
 
 /// Jobs of chance with lines, arcs and feeds, which a person slows down, speeds up and holds.
-fn check_jobs(seeds: core::ops::Range<u64>) {
+fn check_jobs(seeds: impl Iterator<Item = u64>) {
     let mut worst = 0.0_f64;
     for seed in seeds {
         let mut random = drawings::chance(seed);
@@ -176,14 +174,14 @@ fn a_few_jobs_of_chance_keep_the_limit() {
 #[test]
 #[ignore = "minutes in a release build: .ci/run runs it"]
 fn whole_jobs_of_chance_keep_the_limit() {
-    check_jobs(1000..1200);
+    check_jobs(sampled(1000..1200));
 }
 
 /// The documented machine: 87.58 steps/mm, so up to 8758 pulses/s, and simulated motors that lose steps.
 #[test]
 #[ignore = "half a minute in a release build: .ci/run runs it"]
 fn whole_drawings_lose_no_step() {
-    let drawings = drawings::built().into_iter().chain(drawings::real());
+    let drawings = sampled(drawings::built().into_iter().chain(drawings::real()));
     for drawing in drawings {
         for (mode, settings) in modes() {
             let mut plant = StepperPlant::new(StepperSettings::default(), StepperSettings::default());
@@ -343,7 +341,7 @@ fn motors_with_a_fifth_to_spare_lose_no_step_and_at_half_more_they_do() {
 #[ignore = "a minute in a release build: .ci/run runs it, and it is a table of docs/results/stepper-motion.md"]
 fn whole_drawings_have_a_fifth_to_spare() {
     println!("drawing, mode, greatest lag of 2 full steps, least torque / what the limit asks for, at 1.5 x");
-    for drawing in drawings::built().into_iter().chain(drawings::real()) {
+    for drawing in sampled(drawings::built().into_iter().chain(drawings::real())) {
         check_reserve(&drawing);
     }
 }
@@ -357,7 +355,7 @@ fn table_of_times() {
     println!(
         "| drawing | courses | exact | 16 blocks | tolerance | 16 blocks | s-curve exact | s-curve tolerance |"
     );
-    for drawing in drawings::built().into_iter().chain(drawings::real()) {
+    for drawing in sampled(drawings::built().into_iter().chain(drawings::real())) {
         let [exact, tolerance, curved, curved_tolerance] = modes.map(|(_, settings)| {
             (planned::<1024>(settings, &drawing.ops), planned::<16>(settings, &drawing.ops).0)
         });

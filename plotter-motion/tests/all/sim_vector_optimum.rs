@@ -12,6 +12,7 @@
     reason = "what was measured, for whoever looks; counts of cells"
 )]
 
+use crate::sampled::sampled;
 use crate::{auditor, drawings, felt};
 use plotter_motion::{
     PathMode, Pen, PlannerSettings, PlotOp, Point, Vec2,
@@ -128,7 +129,7 @@ fn short_drawings_take_hardly_longer_than_their_path_needs() {
 #[test]
 #[ignore = "seconds in a release build: .ci/run runs it, and it is a table of docs/results/stepper-motion.md"]
 fn table_of_whole_drawings() {
-    for drawing in drawings::built().into_iter().chain(drawings::real()) {
+    for drawing in sampled(drawings::built().into_iter().chain(drawings::real())) {
         let planned_s = check(&drawing);
         let reference = REFERENCE.iter().find(|(name, _)| *name == drawing.name);
         let most_s = reference.map_or(f64::INFINITY, |(_, time_s)| REFERENCE_SHARE * time_s);

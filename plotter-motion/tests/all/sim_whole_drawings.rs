@@ -8,6 +8,7 @@
 
 use crate::figure::Figure;
 use crate::papers::row_of;
+use crate::sampled::sampled;
 use core::time::Duration;
 use plotter_motion::testbed::{Drawing, Entry, Figures, LateLoop, TestBed, TestBedSettings};
 use plotter_motion::{Machine, MachineConfig, Pen, PenMove, Point, config::AxisConfig};
@@ -248,7 +249,7 @@ fn whole_drawings_lose_no_count_on_motors_a_quarter_off() {
 #[test]
 #[ignore = "a minute in a release build; run by .ci/run"]
 fn all_drawings_lose_no_count_on_motors_a_quarter_off() {
-    for bench in &BENCHES {
+    for bench in sampled(&BENCHES) {
         draws(bench, "contouring", seed_of_the_day(), 4);
         draws(bench, "cross-coupled", seed_of_the_day().wrapping_add(1), 4);
     }

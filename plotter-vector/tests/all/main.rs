@@ -60,6 +60,8 @@ mod prop_svg;
 mod prop_thinning;
 mod prop_tracking;
 mod random;
+#[path = "../../../plotter-motion/tests/all/sampled.rs"]
+mod sampled;
 mod seams;
 mod segment_distance;
 #[cfg(all(feature = "serde", feature = "svg-in", feature = "toml"))]
