@@ -4,7 +4,7 @@ use std::env::var;
 
 /// Those of `cases` that this run tries: all of them, or one in `SAMPLE_ONE_IN`, which `.ci/run` sets because all
 /// take longer than it may. Which ones, the seed of the property tests tells.
-pub fn sampled<T>(cases: impl IntoIterator<Item = T>) -> impl Iterator<Item = T> {
+pub(crate) fn sampled<T>(cases: impl IntoIterator<Item = T>) -> impl Iterator<Item = T> {
     let number = |name: &str, otherwise: usize| {
         var(name)
             .map_or(otherwise, |text| text.parse().unwrap_or_else(|error| panic!("{name}={text}: {error}")))
