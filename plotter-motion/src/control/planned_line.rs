@@ -19,7 +19,7 @@ use core::time::Duration;
 /// for another that is held fast. When the plan is over, an axis that stands in the middle of its target's
 /// count gets no drive, and one that stands a few counts beside it is pushed there count by count; both
 /// having stood there for `settle_ms`, the pen has arrived. What rounding to the steps of the duty took or
-/// gave is made up for in the next run.
+/// gave is made up for in the next run. A run that comes late finds the reference where the time has led it.
 ///
 /// ```
 /// # use core::time::Duration;

@@ -271,7 +271,8 @@ fn seed_of_the_day() -> u64 {
     std::env::var("PROPTEST_RNG_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(1)
 }
 
-/// How many of many drawings lose counts on every bench, which all promise that none does, and how far they go astray.
+/// How many of many drawings lose counts on every bench, which all promise that none does, and how far they
+/// go astray.
 #[test]
 #[ignore = "a minute a seed in a release build, by hand: PROFILE_SEEDS of them, from PROPTEST_RNG_SEED on"]
 fn survey_of_lost_counts() {
