@@ -69,6 +69,8 @@ fn table(table: &Table) -> String {
 fn below(table: &Table) -> String {
     let mut text = format!("Again: `{}`.\n", table.command);
     let runs = match table.held {
+        // What is slow without the optimizer is left out without `--release`.
+        Held::Tests if table.command.contains("--release") => Some("cargo test --release --workspace"),
         Held::Tests => Some("cargo test --workspace"),
         Held::Ci => Some(".ci/run"),
         Held::Hand => None,

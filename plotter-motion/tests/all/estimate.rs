@@ -1,5 +1,6 @@
 //! The time of drawings without their steps is that of the steps.
 
+use crate::law_cases::cases;
 use crate::{auditor, drawings, real_files};
 use core::time::Duration;
 use plotter_motion::{
@@ -79,6 +80,7 @@ fn modes() -> [(&'static str, PlannerSettings); 4] {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn drawings_take_what_their_steps_take_to_the_tick() {
     let built = [drawings::spiral(2), drawings::hatch(6), drawings::zigzag(100), drawings::circle()];
     for drawing in built.into_iter().chain([drawings::arcs()]) {
@@ -91,6 +93,7 @@ fn drawings_take_what_their_steps_take_to_the_tick() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn files_take_what_their_steps_take_to_the_tick() {
     for kind in ["hpgl", "gcode"] {
         for file in real_files::all(kind) {
@@ -147,7 +150,7 @@ fn ops() -> impl Strategy<Value = Vec<PlotOp>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(cases(48))]
 
     #[test]
     fn any_drawing_takes_what_its_steps_take(ops in ops(), laser: bool, settle_us in 0_u64..300_000) {
@@ -193,6 +196,7 @@ fn what_cannot_be_planned_is_told_and_the_rest_counts() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn it_is_ten_times_as_fast_as_the_steps() {
     let ops = drawings::spiral(20).ops;
     let (settings, timing) = (PlannerSettings::default(), StepGenSettings::default());

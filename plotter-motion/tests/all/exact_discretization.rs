@@ -1,6 +1,7 @@
 //! The simulated motor and belt against a solver that is not ours: nalgebra's matrix exponential (Padé
 //! approximants; ours is a Taylor series, scaled and squared).
 
+use crate::law_cases::cases;
 use nalgebra::{SMatrix, SVector};
 use plotter_motion::config::{AxisConfig, LoadConfig, MotorConfig, TransmissionConfig};
 use plotter_motion::plant::{BeltDrive, BeltDriveState, DcMotor, DcMotorState};
@@ -32,7 +33,7 @@ fn motor_exponential(motor: &MotorConfig, load: &LoadConfig, dt_s: f64) -> SMatr
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..cases(256) })]
 
     /// Any motor that a machine's file may describe within reason, any state, any step from a microsecond to
     /// a tenth of a second.

@@ -5,6 +5,7 @@ use crate::drawings;
 use crate::sampled::sampled;
 use crate::stepper_bench;
 
+use crate::law_cases::cases;
 use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{
@@ -258,6 +259,7 @@ fn assert_in_time<const N: usize>(settings: StepperPlotterSettings, text: &str) 
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn every_step_is_at_its_tick_while_the_main_loop_is_away() {
     for planner in modes() {
         assert!(assert_in_time::<4096>(settings(planner), &drawing()) > 100_000);
@@ -265,6 +267,7 @@ fn every_step_is_at_its_tick_while_the_main_loop_is_away() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn forty_thousand_steps_a_second_of_both_motors_are_at_their_ticks() {
     // 457 mm/s along both axes.
     let speed_mm_s = 40_000.0 / 87.58 * 2.0_f64.sqrt();
@@ -325,6 +328,7 @@ fn away_400(now_us: u64) -> bool {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn a_machine_that_runs_out_of_steps_comes_to_rest_within_its_limits_and_goes_on() {
     let planner = PlannerSettings { accel_mm_s2: 1000.0, ..PlannerSettings::default() };
     let settings = settings(planner);
@@ -536,6 +540,7 @@ fn a_hold_brakes_along_the_path_and_goes_on() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn it_homes_with_its_place_known_again() {
     let homing = StepperPlotterSettings { homing: true, ..settings(PlannerSettings::default()) };
     let mut halves = Halves::new::<1024>(homing, |_| true);
@@ -614,7 +619,7 @@ fn delays_in_a_stream_are_the_same_steps() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(cases(24))]
 
     /// Whatever a host sends and whenever the main loop and both switches come: what is told as the place is
     /// what the motors made, and nothing moves behind a stop.

@@ -1,5 +1,6 @@
 //! A third axis: planned and stepped within its limits, moved by Grbl's words, homed before the others.
 
+use crate::law_cases::cases;
 use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{
@@ -129,7 +130,7 @@ fn op() -> impl Strategy<Value = (PlotOp, Option<f64>)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(cases(64))]
 
     /// Where a tool path has led, all three motors are, to the step; and z is never driven harder than it is
     /// said to stand.
@@ -462,6 +463,7 @@ fn its_settings_are_read_and_changed() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn it_is_homed_before_the_others_and_tells_how_far_it_was_off() {
     let mut bench = Bench::new(StepperPlotterSettings { homing: true, ..settings() });
     bench.at = [500, 700, 3_000];
@@ -580,11 +582,12 @@ fn with_second(offset_steps: i32) -> StepperPlotterSettings {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(cases(48))]
 
     /// However the gantry is racked, both motors come to their own switches, no farther, and stand as they
     /// are to stand to each other from then on.
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
     fn two_motors_of_an_axis_are_made_square(
         first in 0_i32..27_000,
         racked in -400_i32..400,

@@ -1,5 +1,6 @@
 //! The host of Marlin's language against a small machine that takes numbered lines as Marlin does.
 
+use crate::law_cases::cases;
 use plotter_motion::gcode::{PenControl, WriteOptions};
 use plotter_motion::protocol::hosts::{
     HostState, LineHost, LineHostSettings, MachineHost as _, MachineNotice, Marlin, Request,
@@ -218,7 +219,7 @@ fn a_machine_that_forgot_its_count_without_a_word_is_found_out() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+    #![proptest_config(cases(64))]
 
     /// Whatever bytes come wrong on either way, one in each line of the host, the machine takes each line
     /// once and in its order, or the host stops and says so.

@@ -54,6 +54,7 @@ mod hpgl_reader;
 mod hpgl_real_files;
 mod hpgl_turned_frame;
 mod hpgl_writer;
+mod law_cases;
 mod link_session;
 mod loaded_gantry;
 #[cfg(feature = "build")]

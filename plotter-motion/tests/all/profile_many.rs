@@ -136,6 +136,7 @@ fn check_s_curve(length_mm: f64, limits: MotionLimits) -> Result<(), String> {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn s_curves_keep_their_limits_and_end_at_rest_on_all_inputs() {
     let mut random = Random(1);
     for case in 0..cases() {
@@ -234,6 +235,7 @@ fn check_trapezoid(asked: TrapezoidMove) -> Result<(), String> {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn trapezoids_keep_their_limits_and_reach_their_end_on_all_inputs() {
     let mut random = Random(2);
     for case in 0..cases() {
@@ -260,6 +262,7 @@ fn trapezoids_keep_their_limits_and_reach_their_end_on_all_inputs() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn ramps_change_the_speed_as_the_book_says_on_all_inputs() {
     let mut random = Random(3);
     for case in 0..cases() {

@@ -12,6 +12,7 @@
 //! and the carriage goes half of what both motors turn the belt by.
 
 use crate::figure::Figure;
+use crate::law_cases::cases;
 use crate::marking;
 use core::f64::consts::TAU;
 use core::time::Duration;
@@ -167,7 +168,7 @@ fn start() -> impl Strategy<Value = Point> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, cases: 64, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..cases(64) })]
 
     /// Motors that differ from their mean by up to twice the share that the gate was told.
     #[test]
@@ -191,6 +192,7 @@ proptest! {
 /// Along the right switch for two seconds, with the motor that pushes at it 30 % faster than the mean and the
 /// other 30 % slower: by far more than the 15 % of which the gate knows.
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn motors_faster_than_told_do_not_creep_into_a_switch() {
     /// Two pulses: the one that shows it, and the run-down at the speed of creeping.
     const CREPT_MM: f64 = 2.0 / PULSES_PER_MM;

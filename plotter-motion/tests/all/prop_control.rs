@@ -1,5 +1,6 @@
 //! Laws of the controllers and the simulated axes under any input.
 
+use crate::law_cases::cases;
 use core::time::Duration;
 use plotter_motion::control::{Contouring, LineController, LineTracking};
 use plotter_motion::plant::AxisPlant;
@@ -103,6 +104,7 @@ fn runs(controller: &mut impl LineController, inputs: &[(Duration, Input)]) -> R
 }
 
 proptest! {
+    #![proptest_config(cases(256))]
     #[test]
     fn contouring_stays_in_range_and_alive_under_any_input(
         decoding in decoding(),

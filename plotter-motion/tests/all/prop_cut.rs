@@ -1,5 +1,6 @@
 //! Laws of cropping, of hiding and of hatching: against a test of places in polygons of its own.
 
+use crate::law_cases::cases;
 use core::f64::consts::{PI, TAU};
 use core::time::Duration;
 use plotter_motion::drawing::{
@@ -140,6 +141,7 @@ fn check_crop(drawing: &Drawing, polygon: &[Point]) -> Result<(), TestCaseError>
 }
 
 proptest! {
+    #![proptest_config(cases(256))]
     #[test]
     fn what_lies_inside_stays_and_the_rest_lies_outside(drawing in drawing(), polygon in polygon()) {
         check_crop(&drawing, &polygon)?;

@@ -1,5 +1,6 @@
 //! Laws of drawings: what goes through them comes back, and maps keep what they ought to.
 
+use crate::law_cases::cases;
 use core::f64::consts::TAU;
 use core::time::Duration;
 use plotter_motion::drawing::{Affine, Drawing, Mark, PathSegment, Shape, Stroke};
@@ -54,6 +55,7 @@ fn without_cubics(mut drawing: Drawing) -> Drawing {
 }
 
 proptest! {
+    #![proptest_config(cases(256))]
     #[test]
     fn operations_and_back_lose_nothing(drawing in drawing()) {
         let drawing = without_cubics(drawing);

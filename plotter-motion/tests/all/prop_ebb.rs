@@ -1,5 +1,6 @@
 //! Laws of a drawing as commands of an EBB, by the board's own arithmetic.
 
+use crate::law_cases::cases;
 use plotter_motion::kinematics::{BeltSigns, CoreXy, Kinematics};
 use plotter_motion::planner::{Action, PathMode};
 use plotter_motion::protocol::ebb::{
@@ -196,7 +197,7 @@ fn end_of(ops: &[PlotOp]) -> StepPoint {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(cases(100))]
 
     #[test]
     fn the_end_is_exact_and_the_pen_stays_on_its_path(

@@ -1,5 +1,6 @@
 //! Laws of G-code: what is written is read back, whatever the layout; and no text, however broken, does harm.
 
+use crate::law_cases::cases;
 use core::time::Duration;
 use plotter_motion::gcode::{
     Block, Detection, DwellUnit, Error, Interpreter, LaserCommand, PenChange, PenControl, PenConvention,
@@ -180,6 +181,7 @@ fn same(read: &PlotOp, meant: &PlotOp, is_dot: bool) -> bool {
 }
 
 proptest! {
+    #![proptest_config(cases(256))]
     #[test]
     fn what_is_written_is_read_back(
         ((write, read), ops) in options().prop_flat_map(|both| (Just(both), drawing(both.0.decimals)))
@@ -416,6 +418,7 @@ fn by_bytes(text: &[u8], read: ReadOptions, copies: bool) -> Vec<Result<PlotOp, 
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn a_text_of_any_length_needs_no_more_memory() {
     // Most of it is what the longest line gives, and the texts of its complaints.
     const BYTES: usize = 4096;

@@ -1,6 +1,7 @@
 //! Laws of HPGL: what is written is read back, whatever the layout; and no text, however broken, does harm.
 
 use crate::figure::Figure;
+use crate::law_cases::cases;
 use plotter_motion::hpgl::{
     Coordinates, Error, Event, Interpreter, Opening, PlotOps, Reader, WriteError, WriteOptions, Writer,
     plot_ops, write_ops,
@@ -470,6 +471,7 @@ fn from_arc(at: Point, centre: Point, out: Vec2, sweep: f64) -> f64 {
 }
 
 proptest! {
+    #![proptest_config(cases(256))]
     #[test]
     fn written_arcs_are_read_back_within_a_unit_and_errors_do_not_add_up(
         arcs in arcs(),

@@ -1,6 +1,7 @@
 //! Laws of what makes fewer lines: doubles dropped, lines simplified, arcs fitted. Distances are reckoned
 //! here anew, from many places.
 
+use crate::law_cases::cases;
 use core::f64::consts::{FRAC_PI_4, PI, TAU};
 use core::time::Duration;
 use plotter_motion::drawing::{Doubles, Drawing, Mark, PathSegment, Shape, Stroke};
@@ -130,6 +131,7 @@ fn nothing_is_lost_or_new(before: &Drawing, after: &Drawing, tolerance_mm: f64) 
 }
 
 proptest! {
+    #![proptest_config(cases(256))]
     #[test]
     fn doubles_keep_the_ink_and_drop_it_once(strokes in proptest::collection::vec(lattice_stroke(), 0..9)) {
         let before = of(strokes);
@@ -362,6 +364,7 @@ fn fewest(places: &[Point], tolerance: f64) -> usize {
 }
 
 proptest! {
+    #![proptest_config(cases(256))]
     #[test]
     fn fewer_lines_are_within_the_tolerance(places in walk(), tolerance in 0.001..0.5_f64) {
         let before = of([Stroke::through(places.iter().copied()).unwrap()]);
@@ -426,7 +429,7 @@ fn rounded() -> impl Strategy<Value = Vec<Point>> {
 
 proptest! {
     // A case takes millions of distances.
-    #![proptest_config(ProptestConfig::with_cases(32))]
+    #![proptest_config(cases(32))]
     #[test]
     fn arcs_are_within_the_tolerance_and_end_where_the_lines_did(places in prop_oneof![rounded(), walk()], tolerance in 0.001..0.2_f64, bend in proptest::option::of(0.0..1.0_f64)) {
         let mut stroke = Stroke::through(places).unwrap();
@@ -473,6 +476,7 @@ proptest! {
 }
 
 proptest! {
+    #![proptest_config(cases(256))]
     /// HPGL rounds places to 0.025 mm: up to 0.018 mm beside the circle, at the ends of its arcs as well. So an
     /// arc through one of them may be 0.036 mm beside the next: with 0.03 mm one circle of 5,000 begins with a
     /// line.
@@ -538,6 +542,7 @@ fn circles_and_rounded_corners_are_arcs_and_corners_are_none() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn much_in_one_place_takes_no_square_of_the_time() {
     const MANY: u32 = 20_000;
     let dots = (0..MANY).map(|_| through(&[(5.0, 5.0)]));

@@ -6,6 +6,7 @@
     reason = "a test may panic, and its numbers are small"
 )]
 
+use crate::law_cases::cases;
 use core::time::Duration;
 use plotter_motion::firmware::{Gantry, LinkedGantry};
 use plotter_motion::protocol::frame::{DecodeError, Decoder, Frame, Kind};
@@ -46,6 +47,7 @@ fn faults() -> impl Strategy<Value = Fault> {
 }
 
 proptest! {
+    #![proptest_config(cases(256))]
     #[test]
     fn a_frame_comes_back_whatever_was_before_it(
         kind in kinds(), sequence: u8, acknowledged: u8, limit: u8, session: u16,
@@ -199,6 +201,7 @@ fn greeted<const PAYLOAD: usize>(host: &mut Link<8, PAYLOAD>) -> (Vec<u8>, Linke
 /// A machine without a session obeys the orders of the digits protocol: a greeting holds none, whatever its
 /// number.
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn nobody_is_stopped_by_a_greeting() {
     let settings = LinkSettings::default();
     for nonce in 0..=u16::MAX {

@@ -1,5 +1,6 @@
 //! Laws of the gate of a belt machine, and of the marking board's controller under any sequence of inputs.
 
+use crate::law_cases::cases;
 use crate::switches::stands_in_the_way;
 use core::time::Duration;
 use plotter_motion::control::{EqualizerSettings, LineController, PointToPoint, PointToPointSettings};
@@ -155,7 +156,7 @@ fn holds<C: LineController>(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..cases(256) })]
 
     #[test]
     fn no_drive_leads_into_a_pressed_switch(

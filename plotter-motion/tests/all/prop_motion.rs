@@ -1,5 +1,6 @@
 //! Laws that hold for any input.
 
+use crate::law_cases::cases;
 use crate::switches::stands_in_the_way;
 use core::time::Duration;
 use plotter_motion::control::ShaftEstimator;
@@ -32,6 +33,7 @@ fn target() -> impl Strategy<Value = StepPoint> {
 }
 
 proptest! {
+    #![proptest_config(cases(256))]
     #[test]
     fn a_planned_motion_keeps_its_limits_and_ends_at_rest(
         length_mm in 0.0..500.0_f64,

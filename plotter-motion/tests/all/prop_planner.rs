@@ -2,6 +2,7 @@
 
 use crate::felt;
 use crate::figure::Figure;
+use crate::law_cases::cases;
 use core::time::Duration;
 use plotter_motion::kinematics::{Cartesian, MotorScale};
 use plotter_motion::{
@@ -428,6 +429,7 @@ fn a_way_nearly_straight_back_is_a_stop_within_a_tolerance() {
 }
 
 proptest! {
+    #![proptest_config(cases(256))]
     #[test]
     fn any_path_is_walked_to_its_end_within_the_limits(
         parts in prop::collection::vec(operation(), 1..60),
@@ -559,6 +561,7 @@ proptest! {
 /// Arcs smaller than a step and as large as the farthest place, tolerances far below a step and far above the
 /// drawing, limits of the least and the greatest size.
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn odd_arcs_tolerances_and_limits_are_planned_within_the_limits() {
     let arc = |radius_mm: f64, sweep_rad: f64| {
         let from = Point::new(1.0, 1.0);

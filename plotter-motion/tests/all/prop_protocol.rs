@@ -1,5 +1,6 @@
 //! Laws of host, line and targets under any answers, pauses and drawings.
 
+use crate::law_cases::cases;
 use core::time::Duration;
 use plotter_motion::protocol::digits::{GREATEST, Receiver};
 use plotter_motion::protocol::{Host, HostEvent, HostNotice, HostSettings, Wire};
@@ -40,6 +41,7 @@ fn settings() -> impl Strategy<Value = HostSettings> {
 }
 
 proptest! {
+    #![proptest_config(cases(256))]
     #[test]
     fn a_host_keeps_its_pauses_and_sends_whole_digits_whatever_is_answered(
         moves in moves(),

@@ -3,6 +3,7 @@
 use crate::stepper_bench;
 use crate::switches::stands_in_the_way;
 
+use crate::law_cases::cases;
 use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{Activity, Dialect, Drivers, StepperPlotterSettings};
@@ -297,7 +298,7 @@ fn outside(at: StepPoint) -> i32 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..cases(256) })]
 
     #[test]
     fn each_line_of_a_stream_has_one_answer_in_its_order(
@@ -401,7 +402,7 @@ proptest! {
 
 proptest! {
     // Each case is minutes of the machine's time.
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..cases(64) })]
 
     #[test]
     fn nothing_done_by_hand_leads_out_of_the_area_or_loses_the_place(

@@ -1,5 +1,6 @@
 //! Laws of what the control test bed is made of: planned lines, learning, worn transmissions, latency.
 
+use crate::law_cases::cases;
 use core::time::Duration;
 use plotter_motion::control::{
     AxisController, AxisState, ContourController, ContourState, CrossCoupled, CrossCoupledSettings,
@@ -95,7 +96,7 @@ impl AxisController for Wild {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..cases(256) })]
 
     #[test]
     fn planned_lines_stay_in_range_and_alive_under_any_input(inputs in inputs()) {
@@ -197,7 +198,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, cases: 24, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..cases(24) })]
 
     /// No belt gains energy from nowhere: three seconds without drive, and all is at rest.
     #[test]

@@ -3,6 +3,7 @@
 
 use crate::tuning_bench;
 
+use crate::law_cases::cases;
 use plotter_motion::control::tuning::{
     Compensator, ExperimentSettings, IntegratingProcess, LoopMargins, RelayExperiment, SampledLoop, Simc,
     StepExperiment,
@@ -78,7 +79,7 @@ fn tick_s() -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+    #![proptest_config(cases(48))]
 
     #[test]
     fn a_step_experiment_ends_in_its_bounds_with_an_error_or_a_loop_that_is_stable(

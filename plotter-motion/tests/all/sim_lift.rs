@@ -1,6 +1,7 @@
 //! A pen that a simulated DC motor lifts between two switches: it comes to both ends, is not driven beyond,
 //! and whatever is broken takes its drive away and is told.
 
+use crate::law_cases::cases;
 use core::time::Duration;
 use plotter_motion::config::AxisConfig;
 use plotter_motion::control::{Lift, LiftFault, LiftSettings, LiftState};
@@ -91,7 +92,7 @@ impl Bench {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(32))]
+    #![proptest_config(cases(32))]
 
     /// From wherever it stands, as often as it is asked, in any rhythm.
     #[test]

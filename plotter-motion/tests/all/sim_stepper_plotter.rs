@@ -3,6 +3,7 @@
 use crate::drawings;
 use crate::stepper_bench;
 
+use crate::law_cases::cases;
 use core::time::Duration;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
 use plotter_motion::plant::{StepperAxis, StepperSettings};
@@ -103,6 +104,7 @@ fn stream(bench: &mut Bench, text: &str) {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn mdraw_draws_a_square_and_a_circle_without_losing_a_step() {
     let mut bench = Bench::new(settings(Dialect::MDraw)).with_plant();
     for path in square_and_circle() {
@@ -116,6 +118,7 @@ fn mdraw_draws_a_square_and_a_circle_without_losing_a_step() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn a_stream_draws_a_square_and_a_circle_without_losing_a_step() {
     let mut bench = Bench::new(settings(Dialect::Grbl)).with_plant();
     bench.ask("");
@@ -139,6 +142,7 @@ fn a_stream_draws_a_square_and_a_circle_without_losing_a_step() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn it_homes_from_any_place() {
     for dialect in [Dialect::MDraw, Dialect::Grbl] {
         for carriage in [[0, 0], [34_000, 28_000], [17_000, 3], [33_990, 14_000], [-20, 28_020]] {
@@ -156,7 +160,7 @@ fn it_homes_from_any_place() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, cases: 24, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..cases(24) })]
 
     #[test]
     fn an_emergency_stop_in_a_stroke_knows_where_the_pen_is(stop_ms in 0..4_000_u64, grbl in any::<bool>()) {
@@ -183,6 +187,7 @@ proptest! {
 /// The drawings that planning is measured on, at the source's rates: base 2000, lines 4000, travels 8000
 /// pulses/s.
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn planned_drawings_lose_no_step_where_a_sudden_start_does() {
     for (draw_hz, travel_hz) in [(2_000.0, 8_000.0), (4_000.0, 8_000.0), (8_000.0, 8_000.0)] {
         let planner = PlannerSettings {

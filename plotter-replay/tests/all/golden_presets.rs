@@ -2,7 +2,7 @@
 //! byte by byte and microsecond by microsecond.
 //!
 //! ```text
-//! UPDATE_GOLDEN=1 cargo test -p plotter-replay --test all golden_presets::    # from the motors on
+//! UPDATE_GOLDEN=1 cargo test --release -p plotter-replay --test all golden_presets::    # from the motors on
 //! ```
 //!
 //! The machines are those of `examples/machines`, where they lie beside this crate; one with a belt has no
@@ -186,6 +186,7 @@ fn assert_is_drawn(path: &Path, machine: &Machine) {
 /// The same tick mark by frames, over a line that damages two bytes in a hundred: what was lost is sent
 /// again, and is in the log.
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn the_gantry_behind_the_link_replays_its_golden_log() {
     let path = directory("tests/golden/semi-virtual-gantry.linked.plog");
     let machine = house::machine(ControllerChoice::Contouring);

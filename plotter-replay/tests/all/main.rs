@@ -33,6 +33,8 @@ mod hosts_of_marlin;
 mod hosts_on_bad_lines;
 mod house;
 mod import;
+#[path = "../../../plotter-motion/tests/all/law_cases.rs"]
+mod law_cases;
 mod line;
 mod lines_in_logs;
 mod linked_session;

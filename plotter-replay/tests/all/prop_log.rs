@@ -1,5 +1,6 @@
 //! A written log is read again unchanged, and a cut costs one line.
 
+use crate::law_cases::cases;
 use plotter_motion::{Axis, Direction, Pen};
 use plotter_replay::log::{DamageKind, Event, Header, ReadError, Reader, Record, SwitchName, Writer};
 use proptest::prelude::*;
@@ -50,6 +51,7 @@ fn good(log: &[u8]) -> Vec<Record> {
 }
 
 proptest! {
+    #![proptest_config(cases(256))]
     #[test]
     fn what_was_written_is_read(records in records(), name in any::<String>(), number in any::<f64>()) {
         let header = Header::new().with_text(&name, &name).with_decimal("number", number);

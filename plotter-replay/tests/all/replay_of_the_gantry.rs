@@ -58,6 +58,7 @@ fn a_recording_replays_equal() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn a_stall_and_an_emergency_stop_replay_equal() {
     for controller in [ControllerChoice::Contouring, ControllerChoice::Published] {
         let machine = machine(controller);

@@ -27,6 +27,8 @@ mod follow_figures;
 mod follow_kinds;
 mod frechet;
 mod hairline_widths;
+#[path = "../../../plotter-motion/tests/all/law_cases.rs"]
+mod law_cases;
 mod layers;
 mod level_lines;
 mod line_ends;

@@ -9,6 +9,7 @@ use crate::frechet;
 use crate::lines;
 use crate::seams::unsplit;
 
+use crate::law_cases::cases;
 use core::f64::consts::TAU;
 use frechet::{some_start_is_within, within};
 use lines::{arcs_and_lines, ellipse, random, sampled, sine, spiral, wild};
@@ -45,7 +46,7 @@ fn circle(centre: PxPoint, radius_px: f64, turn: f64, noise_px: f64, seed: u64) 
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..cases(256) })]
 
     #[test]
     fn an_open_line_is_kept_both_ways_and_in_order(
@@ -208,6 +209,7 @@ fn few_and_bad_sites_are_what_they_are() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn arcs_take_few_pieces() {
     let mut found = Vec::new();
     println!("{:<8} {:>5} {:>5} {:>6}", "curve", "noise", "lines", "pieces");

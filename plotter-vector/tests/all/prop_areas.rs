@@ -7,6 +7,7 @@
 
 use crate::segment_distance;
 
+use crate::law_cases::cases;
 use plotter_vector::{
     Bitmap, Pixel, PxPoint,
     areas::{AreaPath, AreaStyle, Areas, Hatch, Outlines, inset_outlines, split_by_width},
@@ -189,7 +190,7 @@ fn hatches() -> impl Strategy<Value = (Hatch, f64)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(cases(40))]
 
     #[test]
     fn hatching_stays_inside(ink in drawings(70, 60, 40.0), (hatch, pen_px) in hatches()) {

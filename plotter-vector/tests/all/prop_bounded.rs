@@ -1,6 +1,7 @@
 //! Laws of the simplification with a promised error.
 
 use crate::figure::Figure;
+use crate::law_cases::cases;
 use plotter_vector::{
     Pixel,
     report::ErrorTally,
@@ -84,7 +85,7 @@ fn tolerances() -> impl Strategy<Value = f64> {
 
 proptest! {
     // Some of the ways to miss the best polyline show in one walk of a thousand only.
-    #![proptest_config(ProptestConfig::with_cases(5000))]
+    #![proptest_config(cases(5000))]
 
     #[test]
     fn no_polyline_within_the_tolerance_is_better(walk in walks(13), tolerance_px in tolerances()) {

@@ -4,6 +4,7 @@ use crate::frechet;
 use crate::lines;
 use crate::seams::unsplit;
 
+use crate::law_cases::cases;
 use frechet::{some_start_is_within, within};
 use lines::{arcs_and_lines, circle, ellipse, handwriting, random, sampled, sine, spiral, turning, wild};
 use plotter_vector::{
@@ -77,7 +78,7 @@ fn meetings(curve: &Curve) -> Vec<Meeting> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..cases(256) })]
 
     #[test]
     fn an_open_line_is_kept_both_ways_and_in_order(
@@ -123,6 +124,7 @@ proptest! {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn smooth_curves_have_one_direction_where_they_meet() {
     for amount in [0.0, 0.2] {
         let mut met = 0;
@@ -139,7 +141,7 @@ fn smooth_curves_have_one_direction_where_they_meet() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..cases(256) })]
 
     #[test]
     fn an_order_keeps_every_curve(
@@ -227,6 +229,7 @@ fn few_and_bad_sites_are_what_they_are() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn curves_take_few_pieces() {
     let mut found = Vec::new();
     println!("{:<12} {:>5} {:>5} {:>5} {:>6}", "curve", "noise", "lines", "arcs", "curves");

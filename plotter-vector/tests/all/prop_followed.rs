@@ -1,5 +1,6 @@
 //! Laws of lines that are followed one by one.
 
+use crate::law_cases::cases;
 use crate::random::Random;
 use plotter_vector::{Drawing, PxPoint, report::followed_lines};
 use proptest::prelude::*;
@@ -52,7 +53,7 @@ fn most_matched(rows: &[f64], drawn: &[f64], bound: f64) -> usize {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(cases(24))]
 
     /// Of lines side by side as many are followed as can have a drawn one each.
     #[test]

@@ -1,5 +1,6 @@
 //! All strokes lie within the picture, whatever the picture.
 
+use crate::law_cases::cases;
 use plotter_vector::{
     Algorithm, Colour, Drawing, Gray, Mode, Progress, PxPoint, Vectorizer,
     areas::{AreaStyle, Areas, Hatch},
@@ -101,7 +102,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(cases(40))]
 
     #[test]
     fn a_drawing_in_colour_lies_within_its_picture(red in noise(), vectorizer in vectorizers()) {

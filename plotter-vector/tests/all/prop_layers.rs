@@ -1,5 +1,6 @@
 //! Laws of sharing ink out among pens, on any picture.
 
+use crate::law_cases::cases;
 use plotter_vector::{
     Bitmap, Colour, Palette, Pixel, Rgb,
     ink::{Layers, PalettePen, Pens},
@@ -61,7 +62,7 @@ fn inks(layers: &Layers) -> Vec<&Bitmap> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(96))]
+    #![proptest_config(cases(96))]
 
     #[test]
     fn every_ink_pixel_is_in_exactly_one_pen(picture in pictures(), pens in pens()) {

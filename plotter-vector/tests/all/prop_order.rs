@@ -1,5 +1,6 @@
 //! Laws of ordering.
 
+use crate::law_cases::cases;
 use crate::seams::unsplit;
 use plotter_vector::{
     Drawing, Order, PxPoint,
@@ -70,6 +71,7 @@ fn scattered(side: u32) -> Drawing {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn the_fast_shortens_the_way_of_the_nearest_up_to_25_000_strokes() {
     let way = |side, order: Order| {
         Order { one_stroke: false, merge_gap_px: 0.0, ..order }.apply(&scattered(side)).pen_up_px()
@@ -81,7 +83,7 @@ fn the_fast_shortens_the_way_of_the_nearest_up_to_25_000_strokes() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(cases(64))]
 
     #[test]
     fn what_is_drawn_is_kept(strokes in strokes(12, 40), one_stroke in any::<bool>()) {

@@ -1,5 +1,6 @@
 //! Laws of ordering drawings of the sheet: the same ink, pen by pen, with what belongs to it.
 
+use crate::law_cases::cases;
 use crate::seams::unsplit_sheet;
 use plotter_motion::Point;
 use plotter_motion::drawing::{Drawing, Mark, PathSegment, Shape, Stroke};
@@ -133,6 +134,7 @@ fn efforts() -> impl Strategy<Value = OrderEffort> {
 }
 
 proptest! {
+    #![proptest_config(cases(256))]
     #[test]
     fn the_same_is_drawn_with_no_more_travel_and_lifts(
         drawing in drawing(),

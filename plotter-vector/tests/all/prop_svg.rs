@@ -3,6 +3,7 @@
 
 use crate::frechet;
 
+use crate::law_cases::cases;
 use frechet::{some_start_is_within, within};
 use plotter_vector::{
     Curve, Drawing, Palette, PxPoint, Rgb, SvgOptions, ink::PalettePen, read_svg, svg, svg_in::SvgPens,
@@ -55,7 +56,7 @@ fn any_number() -> impl Strategy<Value = f32> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(cases(64))]
 
     #[test]
     fn what_svg_writes_is_read_back(strokes in any_strokes()) {

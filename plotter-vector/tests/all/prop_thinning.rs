@@ -1,5 +1,6 @@
 //! Laws of thinning: topology, width, idempotence, and how far a pixel's influence reaches.
 
+use crate::law_cases::cases;
 use plotter_vector::{
     Bitmap, Pixel,
     raster::{Thinned, Thinning, ThinningMethod},
@@ -115,6 +116,7 @@ fn is_simple_and_no_end(skeleton: &Bitmap, at: Pixel) -> bool {
 }
 
 proptest! {
+    #![proptest_config(cases(256))]
     #[test]
     fn each_component_of_ink_and_paper_keeps_its_one_skeleton(ink in picture(), method in method()) {
         let thinned = Thinning { method, max_passes: ENOUGH_PASSES }.thin(&ink);
@@ -228,6 +230,7 @@ fn rows(ink: &Bitmap, from: u32, to: u32) -> Bitmap {
 
 /// All 65 536 pictures of 4 x 4 in one, 3 px of paper between them.
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn every_picture_of_four_by_four_keeps_its_topology() {
     const PITCH: u32 = 7;
     let mut all = Bitmap::new(256 * PITCH, 256 * PITCH).unwrap();

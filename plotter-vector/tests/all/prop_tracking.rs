@@ -1,5 +1,6 @@
 //! Laws of tracking.
 
+use crate::law_cases::cases;
 use plotter_motion::{Point, Segment};
 use plotter_vector::{
     Algorithm, Bitmap, Pixel, PxPoint, Vectorizer,
@@ -35,6 +36,7 @@ fn sorted(figures: &Figures) -> Vec<Pixel> {
 }
 
 proptest! {
+    #![proptest_config(cases(256))]
     #[test]
     fn every_ink_pixel_is_in_exactly_one_figure_once(ink in pictures(), min_run in 0_usize..20) {
         let figures = OrderedTracking { min_run, ..OrderedTracking::default() }.track(&ink).unwrap();

@@ -1,7 +1,8 @@
 //! Two lines that meet at an acute angle: one stroke with a corner where the pen turned, although the ink
 //! between them is filled.
 //!
-//! `cargo test -p plotter-vector --test all sharp_points:: -- --nocapture` prints what comes of each angle.
+//! `cargo test --release -p plotter-vector --test all sharp_points:: -- --nocapture` prints what
+//! comes of each angle.
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,
@@ -77,6 +78,7 @@ const ALL_RIGHT: f64 = 0.94;
 const MEAN_PX: f64 = 0.6;
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn sharp_points_are_corners_of_one_stroke() {
     let mut all_right = 0;
     let pens = [3.0, 5.0, 7.0].into_iter().flat_map(|px| [(px, false), (px, true)]);

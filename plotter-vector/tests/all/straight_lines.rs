@@ -1,7 +1,8 @@
 //! Straight lines of a pen at 1 bit a pixel, turned a little against the raster: a segment each, that ends
 //! where the pen did.
 //!
-//! `cargo test -p plotter-vector --test all straight_lines:: -- --nocapture` prints what comes of each width.
+//! `cargo test --release -p plotter-vector --test all straight_lines:: -- --nocapture` prints what
+//! comes of each width.
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,
@@ -85,6 +86,7 @@ fn beyond(from: PxPoint, to: PxPoint, at: PxPoint) -> f64 {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn a_straight_line_is_a_segment_at_any_width_and_angle() {
     for (name, lines_at) in [("ruled", ruled as fn(f64) -> Vec<Line>), ("grid", grid)] {
         // Crossings of wider lines so near each other may be found farther aside than a stretch goes over.

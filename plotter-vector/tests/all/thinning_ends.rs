@@ -1,5 +1,6 @@
 //! Where skeletons end: straight strokes with square and round ends, and wedges that taper to a point, at
-//! many angles. `cargo test -p plotter-vector --test all thinning_ends:: -- --nocapture` prints the tables.
+//! many angles. `cargo test --release -p plotter-vector --test all thinning_ends:: -- --nocapture` prints the
+//! tables.
 
 use plotter_vector::{
     Bitmap, Pixel, PxPoint,
@@ -105,6 +106,7 @@ fn strokes(method: ThinningMethod, width: u32, round: bool) -> (f64, u32, u32) {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn strokes_end_half_their_width_before_their_ink() {
     /// Beyond half the width, px: of the two pixels an end lies between, and of the octagon that stands for a
     /// circle.
@@ -135,6 +137,7 @@ fn strokes_end_half_their_width_before_their_ink() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
 fn a_wedge_is_followed_to_its_point() {
     const SIDE: u32 = 221;
     const BASE_PX: f64 = 9.0;

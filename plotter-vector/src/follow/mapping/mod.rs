@@ -82,10 +82,10 @@ enum Doing {
 ///
 /// ```
 /// # use plotter_vector::{PxPoint, follow::*};
-/// let ring: Vec<PxPoint> = (0..=60).map(|i| f64::from(i) * 0.10471975511965977).map(|a| PxPoint::new(300.0 + 120.0 * a.cos(), 300.0 + 120.0 * a.sin())).collect();
-/// let paper = Paper::drawn(600, 600, &[(ring.clone(), 5.0)])?;
+/// let ring: Vec<PxPoint> = (0..=60).map(|i| f64::from(i) * 0.10471975511965977).map(|a| PxPoint::new(100.0 + 25.0 * a.cos(), 100.0 + 25.0 * a.sin())).collect();
+/// let paper = Paper::drawn(200, 200, &[(ring.clone(), 5.0)])?;
 /// let mut camera = SimulatedCamera::new(&paper, CameraSettings::default());
-/// let mut table = SimulatedTable::new(PxPoint::new(300.0, 200.0), TableError { random_px: 1.0, play_px: 3.0, seed: 1 });
+/// let mut table = SimulatedTable::new(PxPoint::new(100.0, 90.0), TableError { random_px: 1.0, play_px: 3.0, seed: 1 });
 /// let mut follower = MappingFollower::new(MappingSettings::default());
 /// let end = loop {
 ///     match follower.observe(&camera.window(table.place()), table.commanded()) {

@@ -71,7 +71,7 @@ pub enum ThinningMethod {
 ///
 /// Of 840 straight strokes with square ends and 840 with round ends, 2 to 15 px wide, and 120 wedges 9 px
 /// wide at the base, at all angles
-/// (`cargo test -p plotter-vector --test all thinning_ends:: -- --nocapture`):
+/// (`cargo test --release -p plotter-vector --test all thinning_ends:: -- --nocapture`):
 ///
 /// | | Guo & Hall | Zhang & Suen |
 /// | --- | --- | --- |

@@ -2,6 +2,7 @@
 
 use super::pictures::every_kind;
 use super::{by_image, by_rows};
+use crate::law_cases::cases;
 use plotter_vector::{FileRows, Vectorizer, decode, picture::Ground};
 use proptest::prelude::*;
 use std::io::Cursor;
@@ -55,7 +56,7 @@ fn apply(bytes: &mut Vec<u8>, change: &Change) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(800))]
+    #![proptest_config(cases(800))]
 
     #[test]
     fn changed_pictures_never_panic(kind in any::<prop::sample::Index>(), changes in prop::collection::vec(change(), 1..5)) {
