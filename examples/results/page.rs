@@ -69,7 +69,7 @@ fn table(table: &Table) -> String {
 fn below(table: &Table) -> String {
     let mut text = format!("Again: `{}`.\n", table.command);
     let runs = match table.held {
-        // What is slow without the optimizer is left out without `--release`.
+        // What is long in a debug build is left out there.
         Held::Tests if table.command.contains("--release") => Some("cargo test --release --workspace"),
         Held::Tests => Some("cargo test --workspace"),
         Held::Ci => Some(".ci/run"),
@@ -135,5 +135,9 @@ mod tests {
                       `cargo test --workspace` runs it.\n\
                       Measured 2026-11-19 to 2026-11-21; any machine gives the same.\n";
         assert!(page.ends_with(wanted), "{page}");
+        let released =
+            SAMPLE.replace("cargo test -p plotter-motion", "cargo test --release -p plotter-motion");
+        let page = of(&Topic::read("lines", &released).unwrap());
+        assert!(page.contains("\n`cargo test --release --workspace` runs it.\n"), "{page}");
     }
 }

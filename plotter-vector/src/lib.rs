@@ -4,6 +4,8 @@
 
 mod disjoint_sets;
 mod parallel;
+#[cfg(test)]
+mod tried_cases;
 
 pub mod areas;
 mod centreline;

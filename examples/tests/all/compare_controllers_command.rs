@@ -11,7 +11,7 @@ fn machine(name: &str) -> String {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn two_controllers_are_ranked_in_table_csv_and_page() {
     let directory = tempfile::tempdir().unwrap();
     let file = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
@@ -53,7 +53,7 @@ fn two_controllers_are_ranked_in_table_csv_and_page() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_drawing_is_drawn_besides_and_several_machines_take_part() {
     let directory = tempfile::tempdir().unwrap();
     let file = |name: &str, contents: &str| {
@@ -87,7 +87,7 @@ fn a_drawing_is_drawn_besides_and_several_machines_take_part() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_controller_of_one_s_own_is_ranked_with_the_others() {
     let gantry = machine("loaded-gantry");
     let output = run_example("my_controller", &["--machine", &gantry, "--only", "published,mine"]);

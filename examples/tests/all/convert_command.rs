@@ -101,7 +101,7 @@ fn svg_and_hpgl_keep_strokes_and_pens() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn every_language_becomes_every_other_one() {
     let folder = Folder::new();
     // Two pens, of which one is not the next; an arc, a circle, a curve, letters, a dot; a sheet that is put out at the end.
@@ -288,7 +288,7 @@ fn what_cannot_be_converted_is_said_and_no_file_is_touched() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn every_real_file_becomes_the_same_strokes_in_the_other_languages() {
     let folder = Folder::new();
     for kind in ["hpgl", "gcode"] {

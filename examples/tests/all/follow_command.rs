@@ -41,7 +41,7 @@ fn drawing(x: u32, y: u32) -> bool {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_drawing_is_followed_and_every_file_written() {
     let folder = tempfile::tempdir().unwrap();
     let image = picture(&folder, "drawing.png", drawing);
@@ -77,7 +77,7 @@ fn a_drawing_is_followed_and_every_file_written() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_published_follower_is_stopped() {
     let folder = tempfile::tempdir().unwrap();
     let image = picture(&folder, "drawing.png", drawing);
@@ -88,7 +88,7 @@ fn the_published_follower_is_stopped() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn bad_input_is_told_in_a_line() {
     let folder = tempfile::tempdir().unwrap();
     let white = picture(&folder, "white.png", |_, _| false);
@@ -102,7 +102,7 @@ fn bad_input_is_told_in_a_line() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn without_lines_nothing_is_covered() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("f.json").to_str().unwrap().to_owned();
@@ -118,7 +118,7 @@ fn without_lines_nothing_is_covered() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_grid_calibrates_the_simulated_camera() {
     let output = run_example("calibrate_camera", &["--barrel", "0.05"]);
     let text = String::from_utf8(output.stdout).unwrap();
@@ -239,7 +239,7 @@ fn record(windows: &Path, machine: &str, paper: &Paper) -> Vec<PxPoint> {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_folder_of_pictures_stands_in_for_a_camera() {
     let folder = tempfile::tempdir().unwrap();
     let windows = folder.path().join("windows");
@@ -334,7 +334,7 @@ fn lines_that_the_machine_does_not_reach_are_no_success() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn ours_says_that_it_takes_no_hand() {
     let folder = tempfile::tempdir().unwrap();
     let image = picture(&folder, "drawing.png", |x, y| (100..200).contains(&x) && (148..152).contains(&y));
@@ -343,7 +343,7 @@ fn ours_says_that_it_takes_no_hand() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_run_without_a_line_still_writes_its_report() {
     let folder = tempfile::tempdir().unwrap();
     let white = picture(&folder, "white.png", |_, _| false);
@@ -370,7 +370,7 @@ fn a_run_without_a_line_still_writes_its_report() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_machine_smaller_than_the_drawing_says_where_lines_leave_it() {
     let folder = tempfile::tempdir().unwrap();
     let (machine, _) = small(folder.path());
@@ -387,7 +387,7 @@ fn a_machine_smaller_than_the_drawing_says_where_lines_leave_it() {
 
 /// The paths of the published follower on the built-in drawing with an exact table: `UPDATE_GOLDEN=1` renews the file, to be looked at.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_published_path_is_the_one_that_was_looked_at() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("f.svg");

@@ -78,7 +78,7 @@ fn tree(package: &str, features: &[&str]) -> BTreeSet<String> {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn by_default_all_dependencies_are_permissive() {
     let licences = licences();
     for package in CRATES {
@@ -95,7 +95,7 @@ fn by_default_all_dependencies_are_permissive() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn behind_features_files_may_be_bound_and_nothing_more() {
     let licences = licences();
     for package in CRATES {

@@ -133,7 +133,7 @@ fn mean_normalized(answers: &[JointAnswer]) -> f64 {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn traces_and_batches_of_many_joints_are_told_with_honest_deviations() {
     const JOINTS: u64 = 150;
     let noise = SensorNoise { signal: 0.02, missed: 0.03, dust: 0.05, ..SensorNoise::default() };
@@ -162,7 +162,7 @@ fn traces_and_batches_of_many_joints_are_told_with_honest_deviations() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_published_crossings_are_told_by_the_published_method() {
     let (mut joints, noise) = (Vec::new(), SensorNoise::default());
     for seed in 0..300 {

@@ -23,7 +23,7 @@ fn number(report: &Value, key: &str) -> f64 {
 const COARSE: [&str; 2] = ["--chord-mm", "10"];
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_built_in_pattern_joins_within_a_tenth_of_a_millimetre() {
     let folder = Folder::new();
     let svg = folder.file("sheet.svg");
@@ -41,7 +41,7 @@ fn the_built_in_pattern_joins_within_a_tenth_of_a_millimetre() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_published_procedure_misses_by_half_of_the_pens_line() {
     let folder = Folder::new();
     let report = folder.long_sheet_report(&[&COARSE[..], &["--method", "published"]].concat());
@@ -59,7 +59,7 @@ fn a_file_is_drawn_and_blank_frames_follow_it() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn paper_of_any_width_anywhere_is_found_and_drawn_on() {
     let folder = Folder::new();
     let change = folder.file("change.svg");
@@ -91,7 +91,7 @@ fn paper_of_any_width_anywhere_is_found_and_drawn_on() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn folds_are_found() {
     let folder = Folder::new();
     let report = folder.long_sheet_report(&[&COARSE[..], &["--folds", "1"]].concat());
@@ -105,7 +105,7 @@ fn folds_are_found() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_same_seed_gives_the_same_sheet() {
     let folder = Folder::new();
     let report = |seed| folder.long_sheet_report(&["--length-m", "4", "--chord-mm", "10", "--seed", seed]);

@@ -19,7 +19,7 @@ fn blot_and_lines() -> Vec<u8> {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn lost_ink_is_said_with_its_place_after_the_files_are_written() {
     let folder = Folder::new();
     let picture = folder.write("blot.pgm", blot_and_lines());

@@ -48,7 +48,7 @@ fn keeps_its_promise(report: &Value, asked_mm: f64) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_flag_stays_within_the_error_that_was_asked_and_its_picture_shows_it() {
     const ASKED_MM: f64 = 0.5;
     let directory = tempfile::tempdir().unwrap();
@@ -67,7 +67,7 @@ fn the_flag_stays_within_the_error_that_was_asked_and_its_picture_shows_it() {
 
 /// A machine that is less exact at its own speed than a small error allows is slowed down, and keeps it.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_machine_that_is_too_quick_is_slowed_down() {
     const ASKED_MM: f64 = 0.1;
     let directory = tempfile::tempdir().unwrap();
@@ -88,7 +88,7 @@ fn a_machine_that_is_too_quick_is_slowed_down() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn what_cannot_be_promised_is_refused_with_the_part_and_the_smallest_error() {
     let stepper = machine("stepper-plotter.toml");
     let said = complaint("max_error", &["--machine", &stepper, "--max-error-mm", "0.01"]);
@@ -140,7 +140,7 @@ fn lines_run_together_only_where_that_is_allowed() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn what_is_wrong_is_said_in_one_line() {
     let directory = tempfile::tempdir().unwrap();
     let file = |name: &str, contents: &str| {

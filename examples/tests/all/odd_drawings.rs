@@ -88,7 +88,7 @@ fn nothing_and_a_dot_are_told_apart() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn thousands_of_dots_in_one_place_stay() {
     // A million takes as long for each: see order_memory of plotter-vector.
     let dots = 20_000;

@@ -52,7 +52,7 @@ fn photograph(reaches_over: bool) -> Vec<u8> {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_sheet_of_known_size_is_drawn_in_its_true_size() {
     let folder = Folder::new();
     let picture = folder.write("sheet.pgm", photograph(false));
@@ -109,7 +109,7 @@ fn a_sheet_of_known_size_is_drawn_in_its_true_size() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn what_runs_over_the_edge_and_what_is_no_sheet_is_said() {
     let folder = Folder::new();
     let picture = folder.write("sheet.pgm", photograph(true));

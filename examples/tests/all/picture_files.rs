@@ -93,7 +93,7 @@ fn a_hundred_millimetres_are_a_hundred_in_every_file() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_file_is_overruled_and_what_it_says_wrongly_is_not_used() {
     let folder = Folder::new();
     let levels = frame(140, 90, 10);
@@ -132,7 +132,7 @@ fn the_file_is_overruled_and_what_it_says_wrongly_is_not_used() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn what_was_taken_from_the_file_is_said_by_every_tool() {
     let folder = Folder::new();
     let levels = frame(140, 90, 10);
@@ -155,7 +155,7 @@ fn what_was_taken_from_the_file_is_said_by_every_tool() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_machine_draws_in_true_size_as_far_as_it_reaches() {
     let folder = Folder::new();
     let levels = frame(140, 90, 10);
@@ -232,7 +232,7 @@ fn files_of_other_kinds_are_named_with_what_reads_them() {
 
 /// Pictures as people have them: those of which only the file's own words make what is right.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn others_pictures_come_as_their_files_say() {
     let folder = Folder::new();
     let plt = folder.file("a.plt");

@@ -11,7 +11,7 @@ use plotter_replay::serial::Port;
 use std::time::{Duration, Instant};
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_flag_is_plotted_and_its_recording_replays() {
     /// An encoder count is 0.025 mm: half of one is what counting alone makes of a perfect line.
     const GRAIN_MM: f64 = 0.0125;
@@ -53,7 +53,7 @@ fn the_flag_is_plotted_and_its_recording_replays() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_published_controller_plots_too_and_shows_its_error() {
     let directory = tempfile::tempdir().unwrap();
     let out = directory.path().to_str().unwrap();
@@ -65,7 +65,7 @@ fn the_published_controller_plots_too_and_shows_its_error() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_line_of_a_pen_is_drawn_once_unless_the_published_algorithm_is_asked_for() {
     let directory = tempfile::tempdir().unwrap();
     let file = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
@@ -89,7 +89,7 @@ fn a_line_of_a_pen_is_drawn_once_unless_the_published_algorithm_is_asked_for() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_marking_board_plots_with_both_controllers_and_shows_its_response() {
     /// A count of a motor is 0.0108 mm of the pen, and the target is rounded to one; one and a half more
     /// while motors that a belt couples are found out.
@@ -177,7 +177,7 @@ fn a_blank_sheet_gives_an_empty_plot() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_technical_drawing_is_plotted_within_a_quarter_of_a_count() {
     const QUARTER_MM: f64 = 0.025 / 4.0;
     let directory = tempfile::tempdir().unwrap();
@@ -228,7 +228,7 @@ fn serve(machine: &Machine, controller: impl BenchController, mut line: Port) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_machine_on_a_port_is_spoken_to_in_the_best_language_that_it_knows() {
     let directory = tempfile::tempdir().unwrap();
     let picture = directory.path().join("line.pbm");

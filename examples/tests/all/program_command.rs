@@ -46,7 +46,7 @@ fn all() -> impl Iterator<Item = &'static str> {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_program_and_the_example_give_the_same_bytes() {
     let folder = Folder::new();
     let flag = data("flag.png");
@@ -71,7 +71,7 @@ fn the_program_and_the_example_give_the_same_bytes() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn every_help_fits_a_page_and_has_an_example() {
     let whole = text(&plotter(&["--help"]).stdout);
     for name in all() {
@@ -93,7 +93,7 @@ fn every_help_fits_a_page_and_has_an_example() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn every_command_with_figures_has_quiet_and_json() {
     for name in all().filter(|name| !["completions", "man"].contains(name)) {
         let help = text(&plotter(&[name, "--help"]).stdout);
@@ -149,7 +149,7 @@ fn a_misspelt_word_is_answered_with_the_nearest_one() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn completions_and_manual_pages_name_every_subcommand() {
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
         let script = text(&plotter(&["completions", shell]).stdout);

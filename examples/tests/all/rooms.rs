@@ -104,7 +104,7 @@ fn rooms_named(text: &str, rooms: &[&str]) -> Vec<usize> {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn rooms_use_the_rooms_before_them_alone() {
     assert_eq!(
         rooms_named("use crate::{areas::X, order::{a, write}};\nfn f() { crate::ink::x(); }", &ROOMS),

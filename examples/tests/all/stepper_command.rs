@@ -103,7 +103,7 @@ fn rounded_corners_are_faster_and_within_the_tolerance() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_jerk_is_limited_as_a_vector_where_that_is_asked_for() {
     let folder = Folder::new();
     let square = folder.write(
@@ -272,7 +272,7 @@ fn wrong_options_are_usage() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn many_bytes_are_read_in_little_memory() {
     // A stroke of 100,000 lines, more than are held at once.
     let folder = Folder::new();
@@ -287,7 +287,7 @@ fn many_bytes_are_read_in_little_memory() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn every_real_file_is_plotted_within_its_limits() {
     let folder = Folder::new();
     for (kind, language) in [("hpgl", "hpgl"), ("gcode", "gcode")] {
@@ -338,7 +338,7 @@ fn estimated_as_stepped(folder: &Folder, arguments: &[&str]) -> Value {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn an_estimate_says_what_the_steps_say() {
     let folder = Folder::new();
     for options in
@@ -379,7 +379,7 @@ fn an_estimate_of_a_bad_file_says_so_as_a_plot_does() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn real_files_are_estimated_as_they_are_stepped() {
     let folder = Folder::new();
     for file in ["hpgl", "gcode"].into_iter().flat_map(all) {
@@ -390,7 +390,7 @@ fn real_files_are_estimated_as_they_are_stepped() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn published_times_are_found_again() {
     /// Of the times as published, which are rounded to this.
     const ROUNDING_S: f64 = 0.1;

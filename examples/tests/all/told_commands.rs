@@ -26,7 +26,7 @@ fn assumed(report: &str) -> Vec<String> {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn every_tool_tells_how_ink_was_told_in_its_table_and_in_its_report() {
     let folder = Folder::new();
     let dark = picture(&folder, "dark.png", |x, y| if is_line(x, y) { 30 } else { 240 });
@@ -58,7 +58,7 @@ fn every_tool_tells_how_ink_was_told_in_its_table_and_in_its_report() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn light_lines_are_followed_as_dark_ones_are_and_it_is_said() {
     let folder = Folder::new();
     let (dark, light) = (
@@ -81,7 +81,7 @@ fn light_lines_are_followed_as_dark_ones_are_and_it_is_said() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn noise_is_no_success_of_any_tool_and_what_helps_is_said() {
     let folder = Folder::new();
     let mut random = SplitMix64::new(4);
@@ -107,7 +107,7 @@ fn noise_is_no_success_of_any_tool_and_what_helps_is_said() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_follower_that_may_see_no_more_windows_says_which_option_allows_more() {
     let folder = Folder::new();
     let dark = picture(&folder, "dark.png", |x, y| if is_line(x, y) { 30 } else { 240 });

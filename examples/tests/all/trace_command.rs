@@ -46,7 +46,7 @@ fn all_files_are_written_and_the_report_has_all_keys() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn arcs_reach_every_file() {
     let directory = tempfile::tempdir().unwrap();
     let file = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
@@ -82,7 +82,7 @@ fn arcs_reach_every_file() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn curves_reach_every_file() {
     let directory = tempfile::tempdir().unwrap();
     let file = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
@@ -184,7 +184,7 @@ fn bad_pictures_get_one_line_and_blank_ones_an_empty_drawing() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_file_cut_anywhere_is_told_in_one_line_and_a_wrong_suffix_does_not_matter() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("scan.jpg");
@@ -218,7 +218,7 @@ fn a_few_bytes_that_claim_a_huge_sheet_take_little_memory() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_pipe_that_takes_no_more_is_an_error() {
     let full = std::path::Path::new("/dev/full");
     if full.exists() {
@@ -358,7 +358,7 @@ fn pencil_and_pen() -> Vec<u8> {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_pencil_line_beside_ink_has_its_pen_or_is_said_to_be_left() {
     let folder = Folder::new();
     let picture = folder.write("pencil.ppm", pencil_and_pen());
@@ -555,7 +555,7 @@ fn pbm(width: usize, height: usize, byte: impl Fn(usize, usize) -> u8) -> Vec<u8
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_sheet_that_cannot_be_held_is_traced_by_rows() {
     let folder = Folder::new();
     // More than the 2²⁸ px of a picture in memory: a frame 8 px wide, black on white and the other way round.
@@ -588,7 +588,7 @@ fn a_sheet_that_cannot_be_held_is_traced_by_rows() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_overlay_of_a_long_sheet_shows_its_worst_place() {
     let folder = Folder::new();
     // Longer than an overlay may be: every second row and column is shown.
@@ -609,7 +609,7 @@ fn the_overlay_of_a_long_sheet_shows_its_worst_place() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn by_rows_and_whole_are_the_same_bytes() {
     let folder = Folder::new();
     let names = ["flag.png", "technical.png"].map(data);
@@ -638,7 +638,7 @@ fn by_rows_and_whole_are_the_same_bytes() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn odd_pictures_are_drawn() {
     let folder = Folder::new();
     let strokes =
@@ -746,7 +746,7 @@ fn pixels_too_small_for_the_plotter_are_refused_or_told() {
 /// Ctrl-C comes while the picture is still on its way through a pipe, so that no clock decides what is met.
 #[cfg(target_os = "linux")]
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn ctrl_c_stops_it_and_nothing_is_written() {
     use std::io::{Read as _, Write as _};
     use std::process::{Command, Stdio};
@@ -789,7 +789,7 @@ fn ctrl_c_stops_it_and_nothing_is_written() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn dirt_that_is_left_out_is_told() {
     let folder = Folder::new();
     // A frame 8 px wide, and nine dots of 5 x 5 px.
@@ -817,7 +817,7 @@ fn dirt_that_is_left_out_is_told() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn ink_inside_of_areas_that_is_left_out_is_told_by_every_tool() {
     let folder = Folder::new();
     // A square of 100 px, and a line 4 px wide.

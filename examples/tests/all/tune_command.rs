@@ -108,7 +108,7 @@ fn a_motor_off_its_description_is_found_by_the_experiments_only() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_method_alone_runs_alone() {
     let folder = Folder::new();
     let names = |method: &str| {
@@ -123,7 +123,7 @@ fn a_method_alone_runs_alone() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn what_cannot_be_tuned_is_said_in_one_line() {
     let folder = Folder::new();
     let refused = complaint("tune", &["--machine", &machine("stepper-plotter")]);

@@ -235,7 +235,7 @@ proptest! {
 
     /// Whatever is on the expander, and whenever it stops to answer.
     #[test]
-    #[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn an_expander_that_is_silent_in_mid_line_stops_the_motors_and_is_told(
         on in prop_oneof![
             Just(Expander::Directions),
@@ -285,7 +285,7 @@ proptest! {
 
     /// The supply sags at any moment of a drawing, and comes back while the host goes on sending.
     #[test]
-    #[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn a_brown_out_in_mid_line_leaves_the_motors_off_until_a_person_has_looked(
         after_us in 1_000_u64..2_500_000,
         homing in any::<bool>(),

@@ -123,7 +123,7 @@ fn draw(mut turn: impl FnMut(u32) -> Duration) -> (Board, StepperPlotter) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn however_slow_the_loop_no_step_is_refused_or_lost() {
     for turn_us in [1, 50, 100, 300, 20_000] {
         let turn = Duration::from_micros(turn_us);

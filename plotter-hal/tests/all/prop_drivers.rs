@@ -387,7 +387,7 @@ proptest! {
     /// the chip's; no bridge is reversed under duty or before its dead time; and no step that was taken is
     /// lost, or made twice.
     #[test]
-    #[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn nothing_that_is_called_makes_a_machine_unsafe(calls in calls()) {
         let analyser = Analyser::default();
         let mut rig = Rig::new(&analyser);

@@ -133,7 +133,7 @@ fn a_text_longer_than_any_machine_s_file_is_not_read() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn deep_nesting_is_refused_and_not_followed() {
     for text in [
         format!("schema = 1\n{}a = 1\n", "a.".repeat(300_000)),

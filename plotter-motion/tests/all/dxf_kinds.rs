@@ -303,7 +303,7 @@ fn damaged_files_keep_what_is_good() {
 
 /// Ten blocks that hold the next one 32,767 times in a row ask for more lines than there are atoms.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn blocks_that_multiply_have_an_end() {
     let mut body = String::from("[BLOCKS]\n");
     for number in 0..10 {

@@ -80,7 +80,7 @@ fn modes() -> [(&'static str, PlannerSettings); 4] {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn drawings_take_what_their_steps_take_to_the_tick() {
     let built = [drawings::spiral(2), drawings::hatch(6), drawings::zigzag(100), drawings::circle()];
     for drawing in built.into_iter().chain([drawings::arcs()]) {
@@ -93,7 +93,7 @@ fn drawings_take_what_their_steps_take_to_the_tick() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn files_take_what_their_steps_take_to_the_tick() {
     for kind in ["hpgl", "gcode"] {
         for file in real_files::all(kind) {
@@ -196,7 +196,7 @@ fn what_cannot_be_planned_is_told_and_the_rest_counts() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn it_is_ten_times_as_fast_as_the_steps() {
     let ops = drawings::spiral(20).ops;
     let (settings, timing) = (PlannerSettings::default(), StepGenSettings::default());

@@ -259,7 +259,7 @@ fn assert_in_time<const N: usize>(settings: StepperPlotterSettings, text: &str) 
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn every_step_is_at_its_tick_while_the_main_loop_is_away() {
     for planner in modes() {
         assert!(assert_in_time::<4096>(settings(planner), &drawing()) > 100_000);
@@ -267,7 +267,7 @@ fn every_step_is_at_its_tick_while_the_main_loop_is_away() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn forty_thousand_steps_a_second_of_both_motors_are_at_their_ticks() {
     // 457 mm/s along both axes.
     let speed_mm_s = 40_000.0 / 87.58 * 2.0_f64.sqrt();
@@ -328,7 +328,7 @@ fn away_400(now_us: u64) -> bool {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_machine_that_runs_out_of_steps_comes_to_rest_within_its_limits_and_goes_on() {
     let planner = PlannerSettings { accel_mm_s2: 1000.0, ..PlannerSettings::default() };
     let settings = settings(planner);
@@ -540,7 +540,7 @@ fn a_hold_brakes_along_the_path_and_goes_on() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn it_homes_with_its_place_known_again() {
     let homing = StepperPlotterSettings { homing: true, ..settings(PlannerSettings::default()) };
     let mut halves = Halves::new::<1024>(homing, |_| true);

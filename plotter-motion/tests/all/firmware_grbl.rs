@@ -234,7 +234,7 @@ fn a_limit_switch_is_an_alarm_and_away_from_it_is_free() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn homing_is_answered_when_it_is_done() {
     let mut bench = homing_bench();
     bench.carriage = [5_000, 6_000];
@@ -369,7 +369,7 @@ fn a_line_with_a_broken_byte_is_refused_and_the_next_one_is_drawn() {
 
 /// What a firmware has kept is carried out at each start, as `$N` tells it.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn startup_lines_are_carried_out_once_the_machine_may_move() {
     let lines = StartupLines::new(["G1X2F6000", "G55"]).unwrap();
     let mut bench = Bench::new(settings());
@@ -477,7 +477,7 @@ fn a_small_grbl_names_what_it_leaves_out() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn homing_warns_of_an_axis_that_is_not_as_it_was_said_to_be() {
     let mut bench = homing_bench();
     assert_eq!((bench.plotter.homed(), bench.plotter.off_steps()), (None, None));
@@ -500,7 +500,7 @@ fn homing_warns_of_an_axis_that_is_not_as_it_was_said_to_be() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn what_an_earlier_homing_has_measured_is_kept_by_the_firmware() {
     let homed = Homed { x_steps: 33_900, y_steps: 28_020 };
     let mut bench = homing_bench();

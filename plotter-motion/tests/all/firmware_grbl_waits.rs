@@ -109,7 +109,7 @@ fn a_line_that_finds_no_room_is_answered_in_its_turn_and_not_drawn_in_part() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_sender_that_counts_a_line_too_many_loses_none() {
     let mut bench = bench();
     bench.ask("M3\nG1 X10 Y10 F6000\n");

@@ -221,7 +221,7 @@ fn the_delay_of_a_step_slows_it_down() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn homing_finds_the_origin_with_the_pen_up() {
     let mut bench = new_bench();
     bench.carriage = [7_000, 12_345];
@@ -260,7 +260,7 @@ fn an_emergency_stop_ends_the_line_and_refuses_the_next_until_it_is_reset() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn an_emergency_stop_while_homing_ends_it() {
     let mut bench = new_bench();
     bench.send("G28\n");

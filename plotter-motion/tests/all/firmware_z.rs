@@ -463,7 +463,7 @@ fn its_settings_are_read_and_changed() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn it_is_homed_before_the_others_and_tells_how_far_it_was_off() {
     let mut bench = Bench::new(StepperPlotterSettings { homing: true, ..settings() });
     bench.at = [500, 700, 3_000];
@@ -587,7 +587,7 @@ proptest! {
     /// However the gantry is racked, both motors come to their own switches, no farther, and stand as they
     /// are to stand to each other from then on.
     #[test]
-    #[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn two_motors_of_an_axis_are_made_square(
         first in 0_i32..27_000,
         racked in -400_i32..400,

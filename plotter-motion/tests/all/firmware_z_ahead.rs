@@ -254,7 +254,7 @@ fn assert_same(settings: StepperPlotterSettings, text: &str) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn every_step_of_a_tool_that_rises_is_at_its_tick() {
     let wave: String = (0..120)
         .map(|n| {
@@ -275,7 +275,7 @@ fn every_step_of_a_tool_that_rises_is_at_its_tick() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn every_step_of_a_pen_that_z_lifts_is_at_its_tick() {
     let pen = Some(ZPen { up_mm: 4.0, down_mm: 1.0 });
     let strokes: String =
@@ -306,7 +306,7 @@ fn away_2_000(now_us: u64) -> bool {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_tool_that_runs_out_of_steps_is_braked_within_its_limits() {
     let text = "G0 Z20\nG0 X60 Y30 Z2\nG1 X10 Y60 Z22 F3000\nG0 Z1\n";
     for jerk_mm_s3 in [None, Some(50_000.0)] {
@@ -327,7 +327,7 @@ fn a_tool_that_runs_out_of_steps_is_braked_within_its_limits() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_tool_is_homed_and_its_place_is_told_from_there() {
     for looks in [false, true] {
         let z = ZAxis { home: Some(ZHoming::default()), ..TOOL };
@@ -404,7 +404,7 @@ proptest! {
 
     /// Two motors of an axis are made square by the halves, too, and stay so.
     #[test]
-    #[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn two_motors_of_an_axis_are_made_square_in_two_halves(first in 0_i32..4_000, racked in -300_i32..300) {
         let second = Some(SecondMotor { axis: Axis::Y, offset_steps: 0, most_skew_steps: 400 });
         let settings = StepperPlotterSettings {

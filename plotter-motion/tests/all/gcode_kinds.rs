@@ -356,7 +356,7 @@ fn variables_formulas_and_loops_are_reckoned() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn what_a_program_cannot_do_is_told_at_its_place() {
     draw(&[
         ("M3\nG1 X#<far>\nG1 X1", "<2: #<far> has no value: set it before, as in `#<far> = 5`> [0 0] 1,0"),

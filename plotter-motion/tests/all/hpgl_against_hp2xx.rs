@@ -290,7 +290,7 @@ pub(crate) fn compared(
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn every_line_of_the_real_files_is_where_hp2xx_draws_it() -> io::Result<()> {
     let mut wrong = Vec::new();
     println!("file: lines of ours and of hp2xx; farthest of ours from theirs, of theirs from ours, units");
@@ -305,7 +305,7 @@ fn every_line_of_the_real_files_is_where_hp2xx_draws_it() -> io::Result<()> {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn what_is_written_is_drawn_by_hp2xx_in_every_layout() -> io::Result<()> {
     let mut wrong = Vec::new();
     for (name, file) in files() {
@@ -355,7 +355,7 @@ const MANNERS: [(&str, &[u8]); 21] = [
 ];
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn texts_in_the_manner_of_programs_are_where_hp2xx_draws_them() -> io::Result<()> {
     let mut wrong = Vec::new();
     for (name, text) in MANNERS {

@@ -32,7 +32,7 @@ const SAID: [(&str, &[&str]); 2] = [
 // Without the font, labels are reported.
 #[cfg(feature = "font")]
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn nothing_is_said_about_good_files() -> io::Result<()> {
     for file in all("hpgl") {
         let text = fs::read(&file)?;

@@ -266,7 +266,7 @@ fn hp2xx_differs(text: &str) -> Option<&'static str> {
 /// hp2xx turns about the origin, as is done here while the size of the sheet is not known.
 #[cfg(feature = "font")]
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn turned_frames_are_where_hp2xx_draws_them() -> std::io::Result<()> {
     let mut wrong = Vec::new();
     if !has_hp2xx() {

@@ -28,7 +28,7 @@ fn phase(action: Action) -> Option<Phase> {
 
 /// 2 m at 0.1 mm/min, which takes two weeks: seconds as `f32` have no halves by then.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_line_of_two_weeks_ends_where_and_when_it_should() {
     /// Millionths of it: times and places are right to a ten millionth.
     const SHARE: f64 = 1e-6;
@@ -61,7 +61,7 @@ fn touches() -> [fn(&mut Planner<16>); 4] {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn no_override_and_no_hold_near_the_end_of_a_line_is_too_hard() {
     // Twice the change of speed of the longest phase, and a little more: then there is little left of the
     // line where something is done.

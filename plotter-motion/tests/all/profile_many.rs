@@ -136,7 +136,7 @@ fn check_s_curve(length_mm: f64, limits: MotionLimits) -> Result<(), String> {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn s_curves_keep_their_limits_and_end_at_rest_on_all_inputs() {
     let mut random = Random(1);
     for case in 0..cases() {
@@ -235,7 +235,7 @@ fn check_trapezoid(asked: TrapezoidMove) -> Result<(), String> {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn trapezoids_keep_their_limits_and_reach_their_end_on_all_inputs() {
     let mut random = Random(2);
     for case in 0..cases() {
@@ -262,7 +262,7 @@ fn trapezoids_keep_their_limits_and_reach_their_end_on_all_inputs() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn ramps_change_the_speed_as_the_book_says_on_all_inputs() {
     let mut random = Random(3);
     for case in 0..cases() {

@@ -192,7 +192,7 @@ proptest! {
 /// Along the right switch for two seconds, with the motor that pushes at it 30 % faster than the mean and the
 /// other 30 % slower: by far more than the 15 % of which the gate knows.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn motors_faster_than_told_do_not_creep_into_a_switch() {
     /// Two pulses: the one that shows it, and the run-down at the speed of creeping.
     const CREPT_MM: f64 = 2.0 / PULSES_PER_MM;

@@ -418,7 +418,7 @@ fn by_bytes(text: &[u8], read: ReadOptions, copies: bool) -> Vec<Result<PlotOp, 
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_text_of_any_length_needs_no_more_memory() {
     // Most of it is what the longest line gives, and the texts of its complaints.
     const BYTES: usize = 4096;

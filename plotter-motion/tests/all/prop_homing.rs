@@ -286,7 +286,7 @@ proptest! {
 /// The documented machine with simulated motors: the rates of homing lose no step, and the known length saves
 /// time.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_stepper_plotter_is_homed_without_losing_a_step() {
     let homed_after_s = |known_steps| {
         let settings = HomingAxis { known_steps, ..HomingAxis::default() };
@@ -325,7 +325,7 @@ fn the_stepper_plotter_is_homed_without_losing_a_step() {
 /// Switches that a true rotor presses, met at 20,000 pulses/s where the axis was said to go on: a motor that
 /// is stopped from there at once loses steps, and the length is right all the same.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_length_known_wrongly_costs_steps_but_not_the_result() {
     /// How far a rotor lags behind its field in its friction: at most 2 steps at either end.
     const LAG_STEPS: u32 = 4;

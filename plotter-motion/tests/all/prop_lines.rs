@@ -542,7 +542,7 @@ fn circles_and_rounded_corners_are_arcs_and_corners_are_none() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn much_in_one_place_takes_no_square_of_the_time() {
     const MANY: u32 = 20_000;
     let dots = (0..MANY).map(|_| through(&[(5.0, 5.0)]));

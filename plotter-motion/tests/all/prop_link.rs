@@ -201,7 +201,7 @@ fn greeted<const PAYLOAD: usize>(host: &mut Link<8, PAYLOAD>) -> (Vec<u8>, Linke
 /// A machine without a session obeys the orders of the digits protocol: a greeting holds none, whatever its
 /// number.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn nobody_is_stopped_by_a_greeting() {
     let settings = LinkSettings::default();
     for nonce in 0..=u16::MAX {

@@ -561,7 +561,7 @@ proptest! {
 /// Arcs smaller than a step and as large as the farthest place, tolerances far below a step and far above the
 /// drawing, limits of the least and the greatest size.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn odd_arcs_tolerances_and_limits_are_planned_within_the_limits() {
     let arc = |radius_mm: f64, sweep_rad: f64| {
         let from = Point::new(1.0, 1.0);

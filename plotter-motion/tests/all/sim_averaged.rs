@@ -296,7 +296,7 @@ fn on_a_large_stack(work: impl FnOnce() + Send + 'static) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_jerk_is_limited_as_a_vector_and_the_path_is_kept() {
     on_a_large_stack(|| {
         for drawing in [
@@ -313,7 +313,7 @@ fn the_jerk_is_limited_as_a_vector_and_the_path_is_kept() {
 
 /// The same plan as it is, averaged over a microsecond.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_audit_sees_a_jerk_that_is_not_averaged() {
     on_a_large_stack(|| {
         let of = within(TOLERANCE_MM).averaged(JERK_MM_S3).unwrap();
@@ -323,7 +323,7 @@ fn the_audit_sees_a_jerk_that_is_not_averaged() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn jobs_of_chance_keep_the_jerk_with_any_limits() {
     on_a_large_stack(|| {
         let mut random = drawings::chance(34);
@@ -365,7 +365,7 @@ fn table_of_whole_drawings() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_machine_of_a_file_has_it_too() {
     let machine = plotter_motion::Machine::new(MachineConfig::stepper_plotter()).unwrap();
     let settings = PlannerSettings::of(&machine);

@@ -228,14 +228,14 @@ fn told(fault: Fault) -> [Option<Trouble>; 5] {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_machine_that_is_well_is_not_complained_of() {
     assert_eq!(told(Fault::None), [None; 5]);
 }
 
 /// Edges that are told two and more at a time are no encoder that counts each twice.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_machine_whose_edges_are_looked_for_is_not_stopped() {
     for name in MACHINES {
         let outcome = draw(&machine(name), Fault::LookedFor);
@@ -244,13 +244,13 @@ fn a_machine_whose_edges_are_looked_for_is_not_stopped() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn crossed_wires_stop_the_motors() {
     assert_eq!(told(Fault::CrossedWires), [Some(Trouble::WrongWay); 5]);
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_silent_encoder_is_taken_for_a_shaft_that_is_held_and_tried_in_short_pushes() {
     for trouble in told(Fault::NoPhaseA) {
         // the x4 decoder still sees phase B, to and fro
@@ -259,7 +259,7 @@ fn a_silent_encoder_is_taken_for_a_shaft_that_is_held_and_tried_in_short_pushes(
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_lost_phase_and_double_edges_stop_the_motors() {
     for fault in [Fault::PhaseBLow, Fault::PhaseBHigh, Fault::EveryEdgeTwice] {
         for trouble in told(fault) {
@@ -271,13 +271,13 @@ fn a_lost_phase_and_double_edges_stop_the_motors() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn half_the_supply_is_told_and_drawn_with() {
     assert_eq!(told(Fault::HalfTheSupply), [Some(Trouble::Changed); 5]);
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_shaft_that_is_held_is_told_and_goes_on_when_it_is_let_go() {
     assert_eq!(told(Fault::Held), [Some(Trouble::Held); 5]);
 }

@@ -47,7 +47,7 @@ fn run(
 const LIMIT: Duration = Duration::from_secs(60);
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn both_controllers_draw_the_square() {
     for choice in [ControllerChoice::Published, ControllerChoice::Contouring] {
         let mut bench = bench(choice);
@@ -66,7 +66,7 @@ fn times_never_go_back_and_each_target_takes_ten_bytes() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_lost_byte_costs_time_but_no_line() {
     let mut bench = bench(ControllerChoice::Contouring);
     let mut lost = None;
@@ -87,7 +87,7 @@ fn a_lost_byte_costs_time_but_no_line() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn an_extra_byte_sends_one_target_astray_and_the_host_mends_it() {
     for extra in [3, b'x'] {
         let mut bench = bench(ControllerChoice::Contouring);
@@ -105,7 +105,7 @@ fn an_extra_byte_sends_one_target_astray_and_the_host_mends_it() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_emergency_stop_stops_at_once_and_the_drawing_goes_on_after_a_reset() {
     let pressed = Duration::from_millis(150);
     let reset = Duration::from_millis(1150);
@@ -133,7 +133,7 @@ fn the_emergency_stop_stops_at_once_and_the_drawing_goes_on_after_a_reset() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_pressed_limit_switch_blocks_its_direction_only() {
     let mut bench = bench(ControllerChoice::Contouring);
     bench.controller_mut().limit_switch(Duration::ZERO, Axis::X, Direction::Plus, true);
@@ -177,7 +177,7 @@ fn digits_that_come_before_the_target_is_reached_are_dropped_and_told() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_host_pauses_as_the_machines_file_says() {
     let mut config = MachineConfig::default();
     config.serial.byte_gap_ms = 25.0;

@@ -58,7 +58,7 @@ fn total_rms_mm(lines: &[LineResult]) -> f64 {
 static FARTHEST: Figure = Figure::of("mm at most");
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn ours_has_less_than_a_hundredth_of_the_published_contour_error() {
     const TIMES_BETTER: f64 = 100.0;
     /// A tenth of an encoder count.
@@ -85,7 +85,7 @@ fn ours_has_less_than_a_hundredth_of_the_published_contour_error() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn steep_and_vertical_lines_are_as_good_as_flat_ones() {
     const AS_GOOD: f64 = 2.0;
     let ours = machine(ControllerChoice::Contouring);
@@ -97,7 +97,7 @@ fn steep_and_vertical_lines_are_as_good_as_flat_ones() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_published_rule_never_ends_on_steep_lines_with_unloaded_motors_and_ours_does() {
     /// Which of the steep lines never end depends on the last bit of the start: look at many.
     const STEEP_DEG: [f64; 15] =
@@ -124,7 +124,7 @@ fn the_published_rule_never_ends_on_steep_lines_with_unloaded_motors_and_ours_do
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn x2_and_x4_encoders_of_as_much_fewer_lines_do_as_well() {
     /// A tenth of an encoder count.
     const EVERY_LINE_MM: f64 = 0.0025;
@@ -144,7 +144,7 @@ fn x2_and_x4_encoders_of_as_much_fewer_lines_do_as_well() {
 
 /// The controller knows the machine from its description only; real motors differ.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_motor_that_differs_from_its_description_stays_within_its_counts() {
     for (share, allowed_max_mm) in [(0.1, 0.05), (0.3, 0.1)] {
         let ours = machine(ControllerChoice::Contouring);

@@ -60,7 +60,7 @@ fn axis(hz: f64, inductance_h: f64) -> AxisConfig {
 static SLOWER: Figure = Figure::of("% beyond 0.1 rad/s");
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn pulses_turn_a_motor_as_their_circuit_does() {
     let time = Duration::from_millis(60);
     for (hz, inductance_h) in [(2_500.0, 6.5e-5), (2_500.0, 1e-3), (20_000.0, 6.5e-5), (500.0, 2e-5)] {
@@ -89,7 +89,7 @@ fn pulses_turn_a_motor_as_their_circuit_does() {
 
 /// What the mean of the voltage would say is far from it: so the test above sees which of both is simulated.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_mean_voltage_is_another_motor() {
     let pulsed = axis(2_500.0, 6.5e-5);
     let [speed, ..] = circuit(&pulsed, 0.2, Duration::from_millis(300));
@@ -104,7 +104,7 @@ fn a_mean_voltage_is_another_motor() {
 /// Let go, a shaft is slowed down by its friction only; a bridge that brakes in between stops it with its own
 /// voltage, too.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn without_pulses_the_motor_runs_free() {
     let ways = [2_500.0, 0.0].map(|hz| {
         let axis = axis(hz, 6.5e-5);

@@ -139,13 +139,13 @@ fn every_line_ends(off: f64, lines: u64, limit: Duration) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn every_line_ends_on_motors_a_tenth_off() {
     every_line_ends(0.1, 20, Duration::from_secs(1));
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn every_line_ends_on_motors_a_quarter_off() {
     every_line_ends(0.25, 20, Duration::from_secs(2));
 }
@@ -153,7 +153,7 @@ fn every_line_ends_on_motors_a_quarter_off() {
 /// The gain of such a motor may be beyond the margin of the loop, which then swings about its reference: the
 /// line still ends.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn every_line_ends_on_motors_of_which_nothing_is_right() {
     every_line_ends(0.4, 20, Duration::from_secs(10));
 }
@@ -168,7 +168,7 @@ fn every_line_of_many_ends() {
 /// One shaft is held fast for the last millimetre and a second more: the line ends when it is let go, not
 /// before.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_line_held_at_its_end_ends_when_it_is_let_go() {
     const LET_GO: Duration = Duration::from_millis(1500);
     for decoding in [Decoding::X1, Decoding::X4] {

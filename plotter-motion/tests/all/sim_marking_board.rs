@@ -135,7 +135,7 @@ fn circles(
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_straight_move_of_30_mm_stays_straight() {
     /// Asked; their least was 1 mm.
     const DRIFT_MM: f64 = 0.05;
@@ -155,7 +155,7 @@ fn a_straight_move_of_30_mm_stays_straight() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn ten_rectangles_lie_on_each_other() {
     /// Asked; theirs was below 1 mm.
     const SPREAD_MM: f64 = 0.1;
@@ -169,7 +169,7 @@ fn ten_rectangles_lie_on_each_other() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_circle_of_300_points_is_round() {
     /// Asked; theirs was 3 to 5 mm.
     const ROUND_MM: f64 = 0.1;
@@ -185,7 +185,7 @@ fn a_circle_of_300_points_is_round() {
 
 /// Down along the pressed right switch, where the stronger motor is the one that pushes at it.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_carriage_does_not_go_into_a_switch_along_which_it_moves() {
     /// The pen of this plant moves by a hundredth of a millimetre between two states of its switches.
     const INTO_MM: f64 = 0.01;
@@ -212,7 +212,7 @@ fn the_carriage_does_not_go_into_a_switch_along_which_it_moves() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn an_emergency_stop_ends_in_the_run_down() {
     /// At 30 mm/s: the motors' time constant of 27 ms, 0.8 mm without friction.
     const RUN_DOWN_MM: f64 = 0.8;
@@ -241,7 +241,7 @@ fn an_emergency_stop_ends_in_the_run_down() {
 /// Which motor is the stronger one, which rail the rougher one, and how the motors are wired does not matter
 /// to ours.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn other_boards_are_drawn_on_as_well() {
     const CORNER_MM: f64 = 0.05;
     let other_signs = CoreXy::new(BeltSigns::TrackingEquations, 46.3).unwrap();

@@ -86,7 +86,7 @@ fn check(drawing: &Drawing, lens: Lens) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn short_drawings_keep_every_limit() {
     for drawing in [drawings::spiral(2), drawings::hatch(4), drawings::zigzag(60), drawings::circle()] {
         check(&drawing, FINE);
@@ -94,7 +94,7 @@ fn short_drawings_keep_every_limit() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn arcs_are_run_as_arcs_within_every_limit() {
     check(&drawings::arcs(), FINE);
     // Courses, not chords.
@@ -169,7 +169,7 @@ fn check_jobs(seeds: impl Iterator<Item = u64>) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_few_jobs_of_chance_keep_the_limit() {
     check_jobs(0..8);
 }
@@ -334,7 +334,7 @@ fn check_reserve(drawing: &Drawing) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn motors_with_a_fifth_to_spare_lose_no_step_and_at_half_more_they_do() {
     for drawing in [drawings::hatch(4), drawings::zigzag(60), drawings::circle()] {
         check_reserve(&drawing);

@@ -183,7 +183,7 @@ fn times(path: PathMode, drawing: &Drawing) -> (f64, f64, f64) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn no_motion_is_quicker_than_the_bound() {
     for drawing in [drawings::hatch(4), drawings::zigzag(25)] {
         let (plain, curved, bound) = times(PathMode::Exact, &drawing);

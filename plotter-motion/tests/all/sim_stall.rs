@@ -35,7 +35,7 @@ fn stalled(choice: ControllerChoice, axis: Axis, target: StepPoint) -> (f64, f64
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn either_motor_waits_for_the_other_and_the_line_shows_no_trace_of_it() {
     /// While it waits, the free motor must not go on.
     const CREEP_MM: f64 = 0.1;

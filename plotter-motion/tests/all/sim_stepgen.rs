@@ -88,7 +88,7 @@ fn every_step_comes_within_a_tick_of_its_place() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_roll_of_ten_metres_is_stepped_to_the_last_step_and_in_time() {
     /// Four fifths of a step, two last bits of ten metres: what `f32` leaves of places along them.
     const PLACES_MM: f64 = 2e-3;

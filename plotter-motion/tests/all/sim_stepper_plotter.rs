@@ -104,7 +104,7 @@ fn stream(bench: &mut Bench, text: &str) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn mdraw_draws_a_square_and_a_circle_without_losing_a_step() {
     let mut bench = Bench::new(settings(Dialect::MDraw)).with_plant();
     for path in square_and_circle() {
@@ -118,7 +118,7 @@ fn mdraw_draws_a_square_and_a_circle_without_losing_a_step() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_stream_draws_a_square_and_a_circle_without_losing_a_step() {
     let mut bench = Bench::new(settings(Dialect::Grbl)).with_plant();
     bench.ask("");
@@ -142,7 +142,7 @@ fn a_stream_draws_a_square_and_a_circle_without_losing_a_step() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn it_homes_from_any_place() {
     for dialect in [Dialect::MDraw, Dialect::Grbl] {
         for carriage in [[0, 0], [34_000, 28_000], [17_000, 3], [33_990, 14_000], [-20, 28_020]] {
@@ -187,7 +187,7 @@ proptest! {
 /// The drawings that planning is measured on, at the source's rates: base 2000, lines 4000, travels 8000
 /// pulses/s.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn planned_drawings_lose_no_step_where_a_sudden_start_does() {
     for (draw_hz, travel_hz) in [(2_000.0, 8_000.0), (4_000.0, 8_000.0), (8_000.0, 8_000.0)] {
         let planner = PlannerSettings {

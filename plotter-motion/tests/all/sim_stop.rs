@@ -208,7 +208,7 @@ fn square() -> Vec<PenMove> {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_stop_over_frames_passes_the_window_by() {
     let mut line = Line::new(&square());
     line.until("on its way", |line| line.bench.controller().gantry().position().x > 500);
@@ -237,7 +237,7 @@ fn a_stop_over_frames_passes_the_window_by() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_hold_lets_the_target_be_finished_and_begins_no_other() {
     let mut line = Line::new(&square());
     line.until("on its way", |line| line.bench.controller().gantry().position().x > 500);
@@ -254,7 +254,7 @@ fn a_hold_lets_the_target_be_finished_and_begins_no_other() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_button_at_a_linked_machine_is_told_and_another_host_learns_of_it() {
     let mut line = Line::new(&square());
     line.until("on its way", |line| line.bench.controller().gantry().position().x > 500);
@@ -281,7 +281,7 @@ fn a_button_at_a_linked_machine_is_told_and_another_host_learns_of_it() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_machine_stops_by_three_bytes_in_any_session_or_none() {
     let mut linked = Linked::new(
         Gantry::new(&machine(), SafetyGate::new(LimitSwitches::RELEASED, false)),

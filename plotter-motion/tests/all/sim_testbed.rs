@@ -81,7 +81,7 @@ fn assert_within(ranking: &Ranking, name: &str, rms_um: f64, max_um: f64) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_plant_is_at_least_as_hard_for_the_published_controller_as_the_trial_s() {
     for decoding in [Decoding::X1, Decoding::X4] {
         let ranking = ranking(decoding, 0.25, &["published"]);
@@ -93,7 +93,7 @@ fn the_plant_is_at_least_as_hard_for_the_published_controller_as_the_trial_s() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn with_x1_encoders_and_a_wrong_description_ours_has_less_than_a_hundredth() {
     for share in [0.25, -0.25] {
         let ranking = ranking(
@@ -115,7 +115,7 @@ fn with_x1_encoders_and_a_wrong_description_ours_has_less_than_a_hundredth() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn with_x4_encoders_ours_has_less_than_a_three_hundredth_and_with_learning_an_eight_hundredth() {
     for share in [0.25, -0.25] {
         let names = ["published", "contouring", "planned-pid", "feed-forward", "cross-coupled", "learning"];
@@ -156,7 +156,7 @@ fn the_files_describe_the_plants_of_these_tests() {
 
 #[cfg(feature = "toml")]
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn every_preset_with_dc_motors_is_a_test_bed() {
     for name in ["worn-gantry", "marking-board-motors", "semi-virtual-gantry"] {
         let file = format!("{}/../examples/machines/{name}.toml", env!("CARGO_MANIFEST_DIR"));

@@ -74,7 +74,7 @@ fn motors() -> Vec<(&'static str, AxisConfig, f64)> {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_experiment_finds_the_motor() {
     const GAIN: f64 = 0.04;
     const LAG: f64 = 0.05;
@@ -121,7 +121,7 @@ fn the_experiment_finds_the_motor() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn tuned_loops_keep_their_margins_on_the_true_motor_and_settle() {
     /// Of the sensitivity, for what the experiment gets wrong.
     const SENSITIVITY: f64 = 1.03;
@@ -206,7 +206,7 @@ fn swing_grows(axis: &AxisConfig, pid: &Pid, factor: f64, tick_s: f64, swing_hz:
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_loop_swings_at_its_gain_margin_and_not_below_it() {
     for (name, axis, _) in motors() {
         for tick_s in [TICK_S, 1e-3] {
@@ -384,7 +384,7 @@ fn an_axis_that_is_held_on_the_way_ends_the_experiment() {
 /// does, on a motor whose supply is so much stronger than described that the loop has more gain. The encoder
 /// is fine, so that there is an edge in every run, and none is miscounted where the shaft swings back.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn contouring_keeps_the_line_within_its_gain_margin_and_finds_out_a_motor_beyond_it() {
     let mut described = MachineConfig::default();
     for axis in [&mut described.x, &mut described.y] {
@@ -416,7 +416,7 @@ fn contouring_keeps_the_line_within_its_gain_margin_and_finds_out_a_motor_beyond
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn suggested_contouring_draws_as_the_default_does() {
     /// A fifth of an encoder count; the default, at a sensitivity of 1.69, keeps a tenth.
     const EVERY_LINE_MM: f64 = 0.005;
@@ -456,7 +456,7 @@ fn eight_lines(described: &MachineConfig, plant: &MachineConfig) -> (usize, f64)
 
 /// Why the default is not below 1.7: with motors off their description, loops that are softer draw worse.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn contouring_draws_worse_below_the_sensitivity_that_is_the_default() {
     let off = |share: f64| {
         let mut plant = MachineConfig::default();
@@ -497,7 +497,7 @@ fn contouring_draws_worse_below_the_sensitivity_that_is_the_default() {
 /// Why `example tune` writes gains in the published form as comments: the published program is called at
 /// every edge, and a sum and a difference by the call are then something else.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_published_program_is_not_helped_by_gains_for_a_loop_at_a_fixed_rate() {
     let mut machine = closed_loop::machine(ControllerChoice::Published);
     let (ended, rms) = eight_lines(&machine, &machine);

@@ -231,7 +231,7 @@ const BENCHES: [Bench; 10] = [
 ];
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn whole_drawings_lose_no_count_on_motors_a_quarter_off() {
     let seed = seed_of_the_day();
     if let Some(row) =

@@ -45,7 +45,7 @@ fn session(path: &Path) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_clean_log_is_described_drawn_and_re_run() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
@@ -144,7 +144,7 @@ fn another_machine_is_a_difference() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_damaged_log_gives_status_1_and_the_place() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
@@ -195,7 +195,7 @@ fn every_help_has_an_example() {
 
 /// A device has no line ends and no end: each of these once read on for ever, or until the memory was full.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 #[cfg(target_os = "linux")]
 fn what_never_ends_is_refused_in_one_line() {
     let directory = tempfile::tempdir().unwrap();

@@ -186,7 +186,7 @@ fn assert_is_drawn(path: &Path, machine: &Machine) {
 /// The same tick mark by frames, over a line that damages two bytes in a hundred: what was lost is sent
 /// again, and is in the log.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_gantry_behind_the_link_replays_its_golden_log() {
     let path = directory("tests/golden/semi-virtual-gantry.linked.plog");
     let machine = house::machine(ControllerChoice::Contouring);

@@ -210,7 +210,7 @@ fn logs_are_compared_to_the_byte() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_recording_is_played_in_part_in_steps_and_as_a_new_log() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();

@@ -93,7 +93,7 @@ fn a_png_has_ink_where_the_line_is_and_paper_beside_it() {
 
 #[cfg(feature = "image")]
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn pictures_stay_within_their_size_whatever_is_drawn() {
     let mut canvas = Canvas::new();
     canvas.add(Layer::Ink, [Point::new(-1e300, 0.0), Point::new(1e300, 1e-300)]);

@@ -100,7 +100,7 @@ fn ended(child: Child) -> (i32, String, String) {
 const TARGET: [u8; 10] = [2, 0, 0, 0, 0, 1, 0, 0, 0, 0];
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn what_goes_over_the_line_is_passed_on_and_recorded() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
@@ -137,7 +137,7 @@ fn what_goes_over_the_line_is_passed_on_and_recorded() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_killed_recorder_has_lost_nothing_older_than_half_a_second() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
@@ -169,7 +169,7 @@ fn a_killed_recorder_has_lost_nothing_older_than_half_a_second() {
 
 /// A disk with room for a few kilobytes: the system's limit for a file stands for it.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_full_disk_stops_the_recording_and_not_the_drawing() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();

@@ -58,7 +58,7 @@ fn a_recording_replays_equal() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_stall_and_an_emergency_stop_replay_equal() {
     for controller in [ControllerChoice::Contouring, ControllerChoice::Published] {
         let machine = machine(controller);

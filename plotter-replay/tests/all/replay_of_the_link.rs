@@ -64,7 +64,7 @@ fn check(records: &[Record], machine: &Machine) -> Outcome {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_recording_of_frames_replays_equal_over_a_good_line_and_a_bad_one() {
     for controller in [ControllerChoice::Contouring, ControllerChoice::Published] {
         let machine = machine(controller);
@@ -85,7 +85,7 @@ fn a_recording_of_frames_replays_equal_over_a_good_line_and_a_bad_one() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn two_re_runs_are_the_same_to_the_byte_and_so_is_a_re_run_of_one() {
     let machine = machine(ControllerChoice::Contouring);
     let (log, _) = recorded(&machine, &bad(), 3);
@@ -106,7 +106,7 @@ fn two_re_runs_are_the_same_to_the_byte_and_so_is_a_re_run_of_one() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_recording_without_edges_is_run_again_message_by_message() {
     let machine = machine(ControllerChoice::Contouring);
     for (faults, seeds) in [(Faults::default(), 0..1), (Faults::mixed(0.01), 1..5), (bad(), 11..13)] {
@@ -130,7 +130,7 @@ fn smaller(machine: &Machine) -> Machine {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn what_differs_is_told_in_words() {
     let machine = machine(ControllerChoice::Contouring);
     let (log, heard) = recorded(&machine, &Faults::default(), 1);
@@ -150,7 +150,7 @@ fn what_differs_is_told_in_words() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_golden_recording_of_frames_holds_fails_and_is_renewed() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("house.plog");
@@ -181,7 +181,7 @@ fn a_golden_recording_of_frames_holds_fails_and_is_renewed() {
 
 /// An order passes all else by, cuts the frame under way, and is repeated until it is answered.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn orders_on_a_bad_line_replay_equal() {
     let machine = machine(ControllerChoice::Contouring);
     for seed in 0..2 {

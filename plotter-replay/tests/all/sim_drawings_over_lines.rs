@@ -282,7 +282,7 @@ fn drawings_by_frames(count: u64, faults: &Faults) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn drawings_by_frames_come_whole_over_a_bad_line() {
     drawings_by_frames(50, &Faults::mixed(0.01));
 }
@@ -290,7 +290,7 @@ fn drawings_by_frames_come_whole_over_a_bad_line() {
 /// Damage that comes in bursts: two bytes of a hundred, from a few at a time to more than a frame has. Noise
 /// of so many bytes may be a stop by itself, three bytes, once in some hundred drawings; none of these is.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn drawings_by_frames_come_whole_through_bursts() {
     for burst_bytes in [3, 10, 40, 150] {
         drawings_by_frames(10, &bursts(burst_bytes));
@@ -425,7 +425,7 @@ fn drawings_by_digits(count: u64) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn drawings_by_digits_are_ruined_and_our_host_notices_all() {
     drawings_by_digits(20);
 }
@@ -437,7 +437,7 @@ fn of_a_thousand_drawings_by_digits_our_host_notices_all_that_are_ruined() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_cable_out_for_ten_seconds_costs_ten_seconds() {
     let moves = drawing(1, 300);
     let mut whole = linked_line(&Faults::default(), 1, &moves, 10);
@@ -510,7 +510,7 @@ fn a_host_killed_and_started_anew_goes_on_at_the_right_target() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_machine_switched_off_in_the_middle_ends_the_drawing_with_a_word() {
     let moves = drawing(1, 100);
     let mut line = linked_line(&Faults::default(), 1, &moves, 10);

@@ -81,7 +81,7 @@ fn all_heard<const W: usize, const P: usize>(host: &Stream<W, P>, machine: &Stre
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_good_line_is_used_to_nine_tenths_in_both_directions() {
     const BYTES: u32 = 256_000;
     let mut line = both::<8, 128>(&Faults::default(), 1, BYTES, BYTES);
@@ -95,7 +95,7 @@ fn a_good_line_is_used_to_nine_tenths_in_both_directions() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn on_a_bad_line_all_comes_in_order_and_once() {
     for seed in 0..20 {
         let mut line = both::<4, 64>(&Faults::mixed(0.01), seed, 5_000, 5_000);
@@ -122,7 +122,7 @@ fn a_reader_that_is_slow_holds_the_writer_back() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_cable_that_was_out_for_ten_seconds_costs_time_only() {
     let cut = vec![SECOND / 2..SECOND * 21 / 2];
     let mut line = both::<4, 64>(&Faults { cut, ..Faults::default() }, 1, 40_000, 10_000);
@@ -157,7 +157,7 @@ fn a_machine_of_digits_is_known_by_its_silence_and_stands_still() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_host_started_anew_opens_a_session_of_its_own() {
     let mut line = both::<4, 64>(&Faults::mixed(0.01), 3, 2_000, 2_000);
     line.run(SECOND / 20, |_, _| false);
@@ -171,7 +171,7 @@ fn a_host_started_anew_opens_a_session_of_its_own() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_machine_switched_off_and_on_is_noticed() {
     let mut line = both::<4, 64>(&Faults::default(), 3, 200_000, 0);
     line.run(SECOND, |_, _| false);

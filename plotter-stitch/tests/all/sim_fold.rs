@@ -22,7 +22,7 @@ fn dusty() -> SensorNoise {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn folds_of_a_fifth_of_a_millimetre_are_seen_and_flat_paper_is_flat() {
     for apart_mm in [-1.5, -0.5, -0.2, 0.2, 0.3, 0.5, 0.7, 1.0, 2.0] {
         assert_eq!(share_of_folds(apart_mm, SensorNoise::default(), 60), 1.0, "{apart_mm} mm");
@@ -110,7 +110,7 @@ fn judged(stationery: &Stationery, apart_mm: f64, seeds: core::ops::Range<u64>) 
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn other_pens_on_other_papers_are_judged_alike() {
     for (what, stationery) in stationery() {
         let (missed, false_alarms) =

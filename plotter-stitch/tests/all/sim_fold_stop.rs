@@ -136,7 +136,7 @@ fn the_diagonal_follows_the_walk() {
 
 /// A fold between both sides' marks takes up paper: ours tells nothing, and the published residual shows it.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn marks_that_fold_with_the_paper_are_refused() {
     let crossings: Vec<Crossing> = ReferenceLines::strip16().crossings().collect();
     let right_mm = Field::default().right_mm();

@@ -66,7 +66,7 @@ fn single_crossing_mm(joints: u64, noise: SensorNoise) -> f64 {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn ours_joins_far_better_than_the_published_method_on_the_same_joints() {
     const JOINTS: u64 = 2_000;
     let published = published_on(JOINTS, SensorNoise::default());
@@ -84,7 +84,7 @@ fn ours_joins_far_better_than_the_published_method_on_the_same_joints() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_told_covariance_is_that_of_the_errors() {
     let noises = [
         ("as expected", SensorNoise::default()),
@@ -106,7 +106,7 @@ fn the_told_covariance_is_that_of_the_errors() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn what_is_wrong_with_the_marks_is_refused_or_does_no_harm() {
     const JOINTS: u64 = 1_500;
     for (missed, dust, most_silent) in [(0.02, 0.02, 3), (0.1, 0.05, 20), (0.25, 0.2, 250)] {

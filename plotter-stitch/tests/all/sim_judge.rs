@@ -121,7 +121,7 @@ fn copies(lines: &ReferenceLines) -> Vec<(&'static str, World)> {
 /// The judge sees what is wrong: without looking for swelling, and with a pen that nobody looked at, it says
 /// so.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn what_is_not_looked_for_is_found_by_the_judge() {
     let lines = ReferenceLines::strip16();
     let pen = World { pen_mm: 0.05, ..World::default() };
@@ -132,7 +132,7 @@ fn what_is_not_looked_for_is_found_by_the_judge() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn pens_papers_and_heads_that_nobody_presumed_are_told_honestly() {
     let lines = ReferenceLines::strip16();
     for (what, world) in faults() {
@@ -150,7 +150,7 @@ fn pens_papers_and_heads_that_nobody_presumed_are_told_honestly() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn strokes_of_the_drawing_are_never_taken_for_marks() {
     let (straight, pattern) = (rows(), ReferenceLines::strip16());
     for lines in [&straight, &pattern] {

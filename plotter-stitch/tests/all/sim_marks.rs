@@ -140,7 +140,7 @@ fn where_every_way_is_barred_no_mark_has_a_place() {
 
 /// A drawing that fills its field does not change what ours tells: the marks stand beside it.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_full_field_changes_nothing_for_ours() {
     let hatching: Vec<[Point; 2]> =
         (0..=1_980).map(|n| [Point::new(f64::from(n), 850.0), Point::new(f64::from(n), 955.0)]).collect();

@@ -328,23 +328,30 @@ fn clipped(places: &[PxPoint], is_trusted: &[bool]) -> Vec<Piece> {
 mod tests {
     use super::*;
     use crate::follow::{CameraSettings, Paper, Route, SimulatedCamera};
+    use crate::tried_cases::tried;
 
     fn at_angle(at: PxPoint, angle: f64, way_px: f64) -> PxPoint {
         PxPoint::new(at.x + way_px * angle.cos(), at.y + way_px * angle.sin())
     }
 
-    /// How far places that are found lie beside the lines drawn, in twelve positions within 90 px: at most, and the mean of the
-    /// positions' greatest distances; and how far a drawn place is from all that are found, at most.
+    /// Where lines are drawn in a window. A bound on a mean that only all of them keep is tried with all.
+    const POSITIONS: [u8; 12] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11];
+
+    /// How far places that are found lie beside the lines drawn, in twelve positions within 90 px: at most, and the
+    /// mean of the positions' greatest distances; and how far a drawn place is from all that are found, at most. In
+    /// a debug build in three of them.
     fn off(pen_px: f64, drawn: &dyn Fn(f64, PxPoint) -> Vec<Vec<PxPoint>>) -> [f64; 3] {
-        off_of(&|turn, at| drawn(turn, at).into_iter().map(|line| (line, pen_px)).collect())
+        off_in(&tried(12, 4), pen_px, drawn)
+    }
+
+    fn off_in(positions: &[u8], pen_px: f64, drawn: &dyn Fn(f64, PxPoint) -> Vec<Vec<PxPoint>>) -> [f64; 3] {
+        off_of(positions, &|turn, at| drawn(turn, at).into_iter().map(|line| (line, pen_px)).collect())
     }
 
     /// The same of lines with the width of each, px.
-    fn off_of(drawn: &dyn Fn(f64, PxPoint) -> Vec<(Vec<PxPoint>, f64)>) -> [f64; 3] {
+    fn off_of(positions: &[u8], drawn: &dyn Fn(f64, PxPoint) -> Vec<(Vec<PxPoint>, f64)>) -> [f64; 3] {
         let (mut worst, mut sum, mut missed) = (0.0_f64, 0.0, 0.0_f64);
-        // Without the optimizer, three of the twelve.
-        let places: Vec<u8> = (0..12).step_by(if cfg!(debug_assertions) { 4 } else { 1 }).collect();
-        for &k in &places {
+        for &k in positions {
             let at = PxPoint::new(150.3 + 0.13 * f64::from(k), 149.7 + 0.31 * f64::from(k));
             let strokes = drawn(0.37 + 0.523 * f64::from(k), at);
             let lines: Vec<_> = strokes.iter().map(|(line, _)| line.clone()).collect();
@@ -363,7 +370,7 @@ mod tests {
             (worst, sum) = (worst.max(greatest), sum + greatest);
             missed = missed.max(apart(&fine, &Route::of(&found)));
         }
-        [worst, sum / places.len() as f64, missed]
+        [worst, sum / positions.len() as f64, missed]
     }
 
     #[test]
@@ -395,7 +402,7 @@ mod tests {
     #[test]
     fn a_thick_curve_stays_round_where_thin_lines_cross_it() {
         for (thick_px, most_mean_px) in [(10.0, 0.5), (12.0, 0.9)] {
-            let off = off_of(&|turn, at| {
+            let off = off_of(&POSITIONS, &|turn, at| {
                 let middle = at_angle(at, turn, 150.0);
                 let on_arc =
                     |angle: f64, radius: f64| at_angle(middle, turn + core::f64::consts::PI + angle, radius);
@@ -416,10 +423,11 @@ mod tests {
                 .map(|k| at_angle(middle, core::f64::consts::TAU * f64::from(k) / 120.0, 70.0))
                 .collect()
         };
-        let circles =
-            off(5.0, &|turn, at| vec![circle(at_angle(at, turn, 70.0)), circle(at_angle(at, turn, -70.0))]);
+        let circles = off_in(&POSITIONS, 5.0, &|turn, at| {
+            vec![circle(at_angle(at, turn, 70.0)), circle(at_angle(at, turn, -70.0))]
+        });
         assert!(circles[0] < 0.7 && circles[1] < 0.3 && circles[2] < 1.8, "{circles:?}");
-        let on_line = off(5.0, &|turn, at| {
+        let on_line = off_in(&POSITIONS, 5.0, &|turn, at| {
             let along = turn + core::f64::consts::FRAC_PI_2;
             vec![
                 circle(at_angle(at, turn, 70.0)),

@@ -158,7 +158,7 @@ fn bare(seed: u64, pen_px: f64, prefer: Prefer) -> Bare {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn no_line_of_a_pen_is_lost_and_hardly_any_ink_is_bare() {
     for (seed, pen_px) in (1..).zip(PENS_PX) {
         let Bare { by_pen_px, told_px, beyond_px, told_beyond_px, .. } = bare(seed, pen_px, Prefer::Both);
@@ -198,7 +198,7 @@ fn a_double_line_beside_a_circle_is_drawn() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_needle_gets_a_stroke_at_its_blunt_end_at_most() {
     const NEEDLES: usize = 100;
     let mut random = Random(0x5851_f42d_4c95_7f2d);

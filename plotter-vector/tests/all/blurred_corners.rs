@@ -11,7 +11,7 @@ use plotter_vector::{PxPoint, Vectorizer};
 const HALF_PX: f64 = 100.0;
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 #[allow(clippy::unwrap_used, reason = "a failure shows")]
 fn three_lines_end_where_their_courses_meet() {
     for seed in 0..8_u8 {

@@ -72,7 +72,7 @@ fn traced(strokes: &[Stroke], pen_px: f64) -> Drawing {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn two_lines_that_cross_go_straight_through() {
     for pen_px in [3.0, 5.0, 8.0] {
         for (first, between) in [(0.0, 90.0), (10.0, 90.0), (33.0, 60.0), (71.0, 45.0), (120.0, 75.0)] {
@@ -161,7 +161,7 @@ fn traced_of_levels(lines: &[Stroke], pen_px: f64) -> Drawing {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_line_of_one_pixel_with_grey_rims_is_one_stroke() {
     // Where a line passes between two rows, both are ink.
     let lines = [through(33.0, 80.0), through(93.0, 80.0), through(160.0, 80.0)];
@@ -172,7 +172,7 @@ fn a_line_of_one_pixel_with_grey_rims_is_one_stroke() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn lines_of_one_pixel_with_grey_rims_cross_straight() {
     for (first, between) in [(10.0, 90.0), (33.0, 60.0), (50.0, 80.0), (120.0, 75.0)] {
         let cross = [through(first, 80.0), through(first + between, 80.0)];
@@ -187,7 +187,7 @@ fn lines_of_one_pixel_with_grey_rims_cross_straight() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_corner_of_one_pixel_with_grey_rims_is_sharp() {
     for (angle, turn) in [(7.0, 90.0), (20.0, 90.0), (47.0, 60.0), (80.0, 120.0)] {
         let corner: Stroke =
@@ -287,7 +287,7 @@ fn a_corner_is_sharp_and_one_vertex() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_circle_closes_and_keeps_its_radius() {
     for radius_px in [8.3, 20.0, 60.4, 90.0] {
         let at = |step: u32| {
@@ -311,7 +311,7 @@ fn a_pen_of_the_lines_width_covers_all_of_the_ink() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_dot_is_one_place_wherever_the_raster_puts_it() {
     // At all eighths of a pixel.
     let at = |i: u32| 20.0 * f64::from(i + 1) + f64::from(i) / 8.0;

@@ -123,7 +123,7 @@ fn bits(gray: &Gray) -> Bitmap {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn lines_go_straight_through_up_to_the_rim_that_cuts_them() {
     const PICTURES: u64 = 40;
     let mut random = Random(0x9e37_79b9_7f4a_7c15);

@@ -51,7 +51,7 @@ fn grain(random: &mut SplitMix64, radius: usize) -> Vec<f64> {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn noise_is_doubted_or_blank() {
     let mut random = SplitMix64::new(3);
     for share in [0.03, 0.1, 0.3] {
@@ -76,7 +76,7 @@ fn noise_is_doubted_or_blank() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_blank_sheet_is_no_doubt() {
     let mut random = SplitMix64::new(5);
     for noise in [0.0, 1.0, 4.0] {
@@ -107,7 +107,7 @@ fn dots(dots: &[[f64; 3]]) -> Gray {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn dots_dashes_and_hatching_are_drawings() {
     let mut random = SplitMix64::new(8);
     let mut strewn = |diameter: f64, spread: f64| -> Vec<[f64; 3]> {

@@ -100,7 +100,7 @@ fn assert_found(name: &str, gray: Gray) -> Vectorized {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_clean_drawing_needs_one_level_and_no_look() {
     let found = assert_found("clean", picture(|x, y| 250.0 - 220.0 * covered(x.into(), y.into(), 4.0)));
     assert_eq!(found.look, None);
@@ -108,7 +108,7 @@ fn a_clean_drawing_needs_one_level_and_no_look() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn faint_lines_are_found_and_an_empty_sheet_with_the_same_noise_stays_empty() {
     let paper = |x, y| 228.0 + 3.0 * noise(x, y);
     let found = assert_found("faint", picture(|x, y| paper(x, y) - 20.0 * covered(x.into(), y.into(), 4.0)));
@@ -118,7 +118,7 @@ fn faint_lines_are_found_and_an_empty_sheet_with_the_same_noise_stays_empty() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn close_hatching_of_faint_lines_is_not_taken_for_noise() {
     let steps = |first: u32, end: u32| (first..end).step_by(13).map(f64::from);
     let at = |x: f64, y: f64| PxPoint::new(x, y);
@@ -139,7 +139,7 @@ fn close_hatching_of_faint_lines_is_not_taken_for_noise() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_edge_of_a_shadow_across_the_drawing_is_no_edge_of_the_sheet() {
     // A hand's, over a third of the paper; its edge is as soft as a lamp is wide.
     let light = |x: u32, y: u32| {
@@ -153,7 +153,7 @@ fn the_edge_of_a_shadow_across_the_drawing_is_no_edge_of_the_sheet() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_photograph_with_shade_and_a_reflection_is_found() {
     let light = |x: u32, y: u32| {
         let (x, y) = (f64::from(x) / f64::from(WIDTH), f64::from(y) / f64::from(HEIGHT));
@@ -169,7 +169,7 @@ fn a_photograph_with_shade_and_a_reflection_is_found() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn ruled_paper_is_told_from_the_drawing_and_kept_where_that_is_asked() {
     let ruled = |x: u32, y: u32| if x % 30 < 2 || y % 30 < 2 { 40.0 } else { 0.0 };
     let level = |x: u32, y: u32| {
@@ -185,7 +185,7 @@ fn ruled_paper_is_told_from_the_drawing_and_kept_where_that_is_asked() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn enlarged_pixels_become_smooth_lines() {
     for k in [3, 4] {
         let own = |x: u32, y: u32| {
@@ -199,7 +199,7 @@ fn enlarged_pixels_become_smooth_lines() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_pencil_line_beside_a_pen_is_found_too() {
     // The circle and the bend are of pencil.
     let pale = |x: u32, y: u32| y > 95 && x > 160;
@@ -209,7 +209,7 @@ fn a_pencil_line_beside_a_pen_is_found_too() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn strokes_with_gaps_of_grain_are_whole() {
     // Grain of two by two pixels: a third of them is bare.
     let level = |x: u32, y: u32| {
@@ -221,7 +221,7 @@ fn strokes_with_gaps_of_grain_are_whole() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn what_lies_beside_the_sheet_is_no_ink() {
     let on_sheet = |x: u32, y: u32| (20..400).contains(&x) && (25..335).contains(&y);
     let wood =

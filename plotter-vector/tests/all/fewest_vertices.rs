@@ -125,7 +125,7 @@ fn picture(name: &str) -> Option<Gray> {
 const TOO_MANY_OF_1000: f64 = 10.0;
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn hardly_a_vertex_of_a_whole_drawing_can_be_left_out_or_be_one_with_the_next() {
     for name in ["flag.png", "technical.png"] {
         let Some(gray) = picture(name) else { return };

@@ -117,7 +117,7 @@ fn outcome(name: &str, lines: &[Line], width_px: f64) -> Outcome {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_line_of_a_turned_grid_is_a_stroke_at_any_width() {
     for turn_rad in [0.05, 0.2, 0.45, core::f64::consts::FRAC_PI_4] {
         for width_px in WIDTHS_PX {
@@ -133,7 +133,7 @@ fn a_line_of_a_turned_grid_is_a_stroke_at_any_width() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_circle_and_a_wave_are_a_stroke_at_any_width() {
     let circle = curve(400, |step| {
         let (sine, cosine) = libm::sincos(step * core::f64::consts::TAU / 400.0);
@@ -152,7 +152,7 @@ fn a_circle_and_a_wave_are_a_stroke_at_any_width() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn lines_that_cross_at_random_are_few_strokes_at_any_width() {
     for width_px in WIDTHS_PX {
         let Outcome { strokes, mean_px, .. } = outcome("forty lines", &random_lines(), width_px);
@@ -162,7 +162,7 @@ fn lines_that_cross_at_random_are_few_strokes_at_any_width() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn thin_lines_are_the_same_strokes_by_rows() {
     for lines in [grid(0.2), random_lines()] {
         let ink = ink_of(SIDE_PX, &lines, 1.4);

@@ -321,7 +321,7 @@ fn as_many_pens_are_found_as_are_asked_for_and_there() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn noise_of_four_colours_takes_a_bounded_time() {
     let colours = [Rgb::WHITE, BLACK, RED, BLUE];
     let place = |noise: f64| colours[(2.0 + 1.999 * noise) as usize].0.map(f64::from);

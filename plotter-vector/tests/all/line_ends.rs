@@ -52,7 +52,7 @@ fn off_px(found: &Drawing, [from, to]: [PxPoint; 2]) -> f64 {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_line_with_square_ends_is_one_stroke_that_ends_half_its_width_before_them() {
     for width_px in [6.0, 9.0, 12.0, 16.0] {
         let (mut vertices, mut wrong) = (0, Vec::new());
@@ -72,7 +72,7 @@ fn a_line_with_square_ends_is_one_stroke_that_ends_half_its_width_before_them() 
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_line_that_the_rim_cuts_is_one_stroke_that_ends_on_it() {
     const SIDE: u32 = 150;
     for width_px in [3.0, 5.0, 9.0, 14.0] {

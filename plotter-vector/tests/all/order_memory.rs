@@ -43,7 +43,7 @@ fn ordered(count: u32) -> (f64, f64) {
 const MOST_BYTES: f64 = 320.0;
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_line_takes_little_memory() {
     if is_alone("order_memory::a_line_takes_little_memory") {
         let (bytes, _) = ordered(300_000);

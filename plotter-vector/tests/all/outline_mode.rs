@@ -56,7 +56,7 @@ fn distance(drawing: &Drawing, pixel: Pixel) -> f64 {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn every_pixel_of_a_line_is_near_a_stroke() {
     let ink = sheet();
     for pen_px in [1.0, 3.0] {
@@ -91,7 +91,7 @@ fn a_square_is_its_outline_and_a_thin_line_one_stroke() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn bands_change_nothing() {
     let ink = sheet();
     for pen_px in [0.0, 1.0, 3.0] {

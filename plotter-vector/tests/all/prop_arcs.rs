@@ -209,7 +209,7 @@ fn few_and_bad_sites_are_what_they_are() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn arcs_take_few_pieces() {
     let mut found = Vec::new();
     println!("{:<8} {:>5} {:>5} {:>6}", "curve", "noise", "lines", "pieces");

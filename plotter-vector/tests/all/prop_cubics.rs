@@ -124,7 +124,7 @@ proptest! {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn smooth_curves_have_one_direction_where_they_meet() {
     for amount in [0.0, 0.2] {
         let mut met = 0;
@@ -229,7 +229,7 @@ fn few_and_bad_sites_are_what_they_are() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn curves_take_few_pieces() {
     let mut found = Vec::new();
     println!("{:<12} {:>5} {:>5} {:>5} {:>6}", "curve", "noise", "lines", "arcs", "curves");

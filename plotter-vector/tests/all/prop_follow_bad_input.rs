@@ -99,7 +99,7 @@ fn level_line(y: f64, pen_px: f64) -> (Vec<PxPoint>, f64) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn no_line_in_view_is_retried_and_told_with_its_place() {
     for level in [0, 128, 255] {
         for (name, mut follower) in followers() {
@@ -119,7 +119,7 @@ fn no_line_in_view_is_retried_and_told_with_its_place() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn white_paper_under_a_light_that_falls_off_has_no_line() {
     for size in [120, 140, 200, 300] {
         let settings = plotter_vector::follow::CameraSettings {
@@ -136,7 +136,7 @@ fn white_paper_under_a_light_that_falls_off_has_no_line() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_line_lost_on_the_way_is_told_and_found_again() {
     for (name, mut follower) in followers() {
         let mut camera = camera(&[level_line(150.0, 5.0)], 120);
@@ -169,7 +169,7 @@ fn a_line_lost_on_the_way_is_told_and_found_again() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_line_too_thick_for_the_window_is_told() {
     // 150 px of ink in a window of 100.
     for y in [150.0, 212.0] {
@@ -187,7 +187,7 @@ fn a_line_too_thick_for_the_window_is_told() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_filled_area_is_no_line() {
     let square: Vec<_> = (0..40).map(|i| level_line(100.0 + 3.0 * f64::from(i), 4.0)).collect();
     for (name, mut follower) in followers() {
@@ -199,7 +199,7 @@ fn a_filled_area_is_no_line() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_filled_area_does_not_hide_the_lines_beside_it() {
     let mut strokes: Vec<_> = (0..30)
         .map(|i| {

@@ -71,7 +71,7 @@ fn scattered(side: u32) -> Drawing {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_fast_shortens_the_way_of_the_nearest_up_to_25_000_strokes() {
     let way = |side, order: Order| {
         Order { one_stroke: false, merge_gap_px: 0.0, ..order }.apply(&scattered(side)).pen_up_px()

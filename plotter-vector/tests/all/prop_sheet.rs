@@ -116,7 +116,7 @@ proptest! {
     #![proptest_config(few())]
 
     #[test]
-    #[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn bands_do_not_show(pen_px in 2.0..6.0_f64, lines in lines(200, 900, 10), mode in 0..3_usize, hatched: bool, pieces in prop::sample::select(PIECES.to_vec())) {
         let gray = drawn(200, 900, pen_px, &lines);
         let ink = ink_of(&gray);
@@ -139,7 +139,7 @@ proptest! {
     }
 
     #[test]
-    #[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn long_strokes_are_cut_alike(
         ends in prop::collection::vec((10..90_i32, 0..9500_i32, 10..90_i32, 0..9500_i32), 1..4),
         ring in 0..4000_i32,
@@ -184,7 +184,7 @@ proptest! {
     }
 
     #[test]
-    #[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn errors_are_those_of_the_whole_picture(
         pen_px in 1.0..6.0_f64,
         lines in lines(200, 700, 8),
@@ -204,7 +204,7 @@ proptest! {
     }
 
     #[test]
-    #[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn the_ink_of_1_bit_is_found_as_of_levels(
         pen_px in 1.0..6.0_f64,
         lines in lines(200, 500, 10),
@@ -258,7 +258,7 @@ fn the_published_algorithm_reports_its_own_errors() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_worst_place_of_a_thin_line_is_the_one_that_is_reported() {
     let holes = [(67, 222), (75, 178), (42, 254), (143, 468), (134, 438), (197, 359), (18, 380)];
     let mut black = ink_of(&drawn(200, 500, 1.0, &[((187, 208), (101, 265))]));

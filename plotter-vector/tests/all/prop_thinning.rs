@@ -230,7 +230,7 @@ fn rows(ink: &Bitmap, from: u32, to: u32) -> Bitmap {
 
 /// All 65 536 pictures of 4 x 4 in one, 3 px of paper between them.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn every_picture_of_four_by_four_keeps_its_topology() {
     const PITCH: u32 = 7;
     let mut all = Bitmap::new(256 * PITCH, 256 * PITCH).unwrap();

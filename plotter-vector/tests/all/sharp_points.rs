@@ -78,7 +78,7 @@ const ALL_RIGHT: f64 = 0.94;
 const MEAN_PX: f64 = 0.6;
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn sharp_points_are_corners_of_one_stroke() {
     let mut all_right = 0;
     let pens = [3.0, 5.0, 7.0].into_iter().flat_map(|px| [(px, false), (px, true)]);

@@ -56,7 +56,7 @@ fn traced_to(source: &mut Counted<'_>, most: f64) -> (u32, Result<TracedSheet, S
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_sheet_is_stopped_between_any_two_bands() {
     let ink = ladder();
     let mut source = Counted { rows: BitmapRows::new(&ink), given: 0 };

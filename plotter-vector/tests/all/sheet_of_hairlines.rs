@@ -59,7 +59,7 @@ impl RowSource for Hairlines {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn hairlines_of_a_huge_sheet_are_followed() -> Result<(), Box<dyn std::error::Error>> {
     assert!(u64::from(WIDTH_PX) * u64::from(HEIGHT_PX) > MAX_PIXELS);
     let mut sheet = Hairlines { next: 0, row: vec![0; (WIDTH_PX / 64) as usize] };

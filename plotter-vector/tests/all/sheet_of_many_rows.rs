@@ -74,7 +74,7 @@ fn strokes(height: u32) -> Vec<Vec<PxPoint>> {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_banner_has_the_strokes_of_its_pieces() {
     let height = 24 * PITCH_PX + 7000;
     assert!(height > 3 * MAX_SIDE_PX);

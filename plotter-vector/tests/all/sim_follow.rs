@@ -52,7 +52,7 @@ fn small_lap(name: &'static str, lines: &[&[(f64, f64)]], pen_px: f64) -> Run {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_crossing_and_a_corner_are_followed_once() {
     let corner = [(40.3, 170.2), (110.7, 40.1), (180.4, 165.8)];
     let across = [(30.2, 100.4), (220.9, 110.3)];
@@ -62,7 +62,7 @@ fn a_crossing_and_a_corner_are_followed_once() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn tips_are_followed_to_and_fro() {
     let run = small_lap(
         "tips",
@@ -74,7 +74,7 @@ fn tips_are_followed_to_and_fro() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn junctions_are_lifted_over_as_seldom_as_can_be() {
     let run = small_lap(
         "junctions",
@@ -87,7 +87,7 @@ fn junctions_are_lifted_over_as_seldom_as_can_be() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn dense_lines_are_followed_one_by_one() {
     // An end of them is seen at the start: a line of which none is in view is begun in its middle, and takes
     // a lift more.
@@ -102,7 +102,7 @@ fn dense_lines_are_followed_one_by_one() {
 /// From an end that is some px behind the line it meets the tool goes back to where they meet, not slantwise
 /// to what is ahead of that line.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn from_an_end_behind_another_line_the_tool_goes_back_to_where_they_meet() {
     let mut greatest = 0.0_f64;
     for behind_px in [5.0, 7.0, 9.0] {
@@ -219,7 +219,7 @@ fn an_exact_table_leaves_what_the_picture_leaves() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_published_follower_is_never_right_on_dense_lines() {
     let [_, _, _, dense] = figures();
     let start = PxPoint::new(90.0, 80.3);

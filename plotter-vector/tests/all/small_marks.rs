@@ -78,7 +78,7 @@ fn share(of: &[&[PxPoint]], near: &[&[PxPoint]]) -> f64 {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn lettering_is_found_where_the_pen_went() {
     // By junctions and corners found one by one: 0.925 and 0.963 at 14 px, 0.975 and 0.990 at 18 px.
     for (height_px, least) in [(14.0, 0.965), (18.0, 0.993)] {
@@ -92,7 +92,7 @@ fn lettering_is_found_where_the_pen_went() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn bands_change_nothing() {
     let ink = ink_of(&lettering(14.0));
     let in_bands =

@@ -245,7 +245,7 @@ fn lines_below_and_through_letters_are_drawn() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn no_text_and_no_bytes_bring_the_reader_down() {
     let mut fonts = fonts(&["Boxes"]);
     let font = made_font("Cut");
@@ -276,7 +276,7 @@ fn no_text_and_no_bytes_bring_the_reader_down() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn texts_without_measure_are_refused_before_they_are_set() {
     let fonts = fonts(&["Boxes"]);
     let refused = |content: &str| {

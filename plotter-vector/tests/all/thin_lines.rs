@@ -71,7 +71,7 @@ fn lines_that_cross_are_mostly_one_stroke_each() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_way_over_a_crossing_keeps_the_promise_both_ways() {
     for ink in [ink_of(&lines()), ink_of(&grid())] {
         for tolerance_px in [0.5, 0.75, 1.0, 2.0] {

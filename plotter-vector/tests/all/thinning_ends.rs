@@ -106,7 +106,7 @@ fn strokes(method: ThinningMethod, width: u32, round: bool) -> (f64, u32, u32) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn strokes_end_half_their_width_before_their_ink() {
     /// Beyond half the width, px: of the two pixels an end lies between, and of the octagon that stands for a
     /// circle.
@@ -137,7 +137,7 @@ fn strokes_end_half_their_width_before_their_ink() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_wedge_is_followed_to_its_point() {
     const SIDE: u32 = 221;
     const BASE_PX: f64 = 9.0;

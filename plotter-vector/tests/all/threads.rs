@@ -7,7 +7,7 @@ use plotter_vector::{
 };
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_number_of_threads_changes_nothing() {
     let (width, height) = (700, 1300);
     // Lines, and noise of all sizes.
@@ -36,7 +36,7 @@ fn the_number_of_threads_changes_nothing() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_sheet_by_rows_is_the_same_on_any_number_of_threads() {
     // Long enough for cuts: upright and slanted lines, and a frame.
     let line = |y: usize| {

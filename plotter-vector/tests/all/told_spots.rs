@@ -25,7 +25,7 @@ fn errors(traced: Vectorized) -> SheetErrors {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn ink_that_a_pen_leaves_bare_lies_in_a_spot_that_is_told() {
     let (mut checked, mut kept) = (0, 0);
     for (seed, pen_px) in (20_000..20_024).zip(PENS_PX.into_iter().cycle()) {

@@ -91,7 +91,7 @@ fn wrong(ink: &Bitmap) -> (f64, f64) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn adaptive_and_auto_find_the_strokes_where_otsu_takes_the_shadow_for_ink() {
     for share in [0.2, 0.3, 0.5] {
         let scan = uneven(share);
@@ -128,7 +128,7 @@ fn scan_of_a_blueprint() -> Gray {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn paper_alone_is_an_empty_sheet() {
     for method in [ThresholdMethod::Auto, ThresholdMethod::Otsu, ThresholdMethod::Adaptive] {
         let threshold = Threshold { method, ..Threshold::default() };
@@ -161,7 +161,7 @@ fn any_shape_of_picture_is_thresholded() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn of_salt_and_pepper_only_what_touches_the_strokes_is_left() {
     let speckled = scan(|x, y| match (noise(x + 9, y) + 1.0) / 2.0 {
         chance if chance < 0.0025 => 0.0,

@@ -51,7 +51,7 @@ fn sum(bytes: &[u8]) -> u64 {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn every_kind_is_the_same_for_a_seed_everywhere() {
     let sample = sample();
     assert_eq!(SUMS.map(|(kind, _)| kind), Kind::ALL);
@@ -116,7 +116,7 @@ fn off_px(picture: &GrayImage, truth: &Truth, at: (f64, f64), across: (f64, f64)
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn ink_lies_where_the_truth_says() {
     // A grid askew: every place of a line on its pixels.
     let grid = || all().into_iter().find(|picture| picture.name == "grid_rot_w3").unwrap();
@@ -149,7 +149,7 @@ fn ink_lies_where_the_truth_says() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_command_writes_a_picture_its_truth_and_its_ink() {
     let folder = Folder::new();
     let out = folder.file("out");

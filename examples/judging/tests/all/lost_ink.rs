@@ -7,7 +7,7 @@ use plotter_vector::Vectorizer;
 use std::io::Cursor;
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn no_picture_of_the_corpus_has_lost_ink() {
     let vectorizer = Vectorizer::default();
     for picture in all() {

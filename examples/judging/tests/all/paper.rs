@@ -64,7 +64,7 @@ fn true_corners(truth: &Truth) -> [PxPoint; 4] {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn strokes_of_a_straightened_sheet_lie_where_they_were_drawn() {
     let folder = Folder::new();
     let Traced { degraded, svg, .. } = middle();
@@ -77,7 +77,7 @@ fn strokes_of_a_straightened_sheet_lie_where_they_were_drawn() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn corners_of_a_sheet_are_found_where_they_are() {
     for strength in Strength::ALL {
         let degraded = photograph(strength);
@@ -90,7 +90,7 @@ fn corners_of_a_sheet_are_found_where_they_are() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_wrong_map_is_noticed() {
     let folder = Folder::new();
     let Traced { degraded, found, svg: text } = middle();

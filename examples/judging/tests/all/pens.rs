@@ -26,13 +26,13 @@ fn each_stroke_is_on_its_pen(kind: PenPicture, number: u32) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn three_pens_have_each_their_strokes_in_every_kind_of_picture() {
     PenPicture::ALL.iter().for_each(|kind| each_stroke_is_on_its_pen(*kind, THREE));
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn eight_pens_have_each_their_strokes_in_a_photograph() {
     each_stroke_is_on_its_pen(PenPicture::Photo, EIGHT);
 }
@@ -44,7 +44,7 @@ fn eight_pens_have_each_their_strokes_in_every_kind_of_picture() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn fewer_pens_than_drew_the_sheet_are_seen_in_the_figures() {
     let sheet = PenSheet::new(1, 1);
     let picture = decode_colour(&sheet.picture(PenPicture::Soft, 1).unwrap()).unwrap();

@@ -246,6 +246,7 @@ fn three(row: &[u64], at: usize) -> (u64, u64, u64) {
 mod tests {
     use super::*;
     use crate::picture::Pixel;
+    use crate::tried_cases::tried;
 
     const ALL: [Step; 11] = [
         Step::GuoHallFirst,
@@ -357,9 +358,8 @@ mod tests {
             &[Step::GuoHallFirst, Step::CornersRising, Step::GuoHallSecond],
             &[Step::GuoHallFirst, Step::CornersFalling, Step::GuoHallSecond],
         ];
-        // Without the optimizer, five of the forty.
-        for seed in (0..40).step_by(if cfg!(debug_assertions) { 8 } else { 1 }) {
-            let mut ink = noise(400, 30, 250, seed);
+        for seed in tried(40, 8) {
+            let mut ink = noise(400, 30, 250, seed.into());
             let mut expected = ink.clone();
             let mut sweeper = Sweeper::new(&ink);
             for steps in TURNS.into_iter().cycle().take(12) {

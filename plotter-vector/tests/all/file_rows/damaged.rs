@@ -12,7 +12,7 @@ fn assert_readable(error: &DecodeError) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "slow without the optimizer")]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_picture_cut_off_anywhere_keeps_the_rows_before() {
     for (name, bytes) in every_kind(11, 7) {
         let whole = by_rows(&bytes).unwrap();
