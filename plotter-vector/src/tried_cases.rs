@@ -1,7 +1,7 @@
 //! A share of the cases of a unit test that is long in a debug build.
 
-/// All of `0..number`, or one in `one_in` of them in a debug build: which ones, `PROPTEST_RNG_SEED` tells, and
-/// `.ci/run` takes another with each commit.
+/// All of `0..number`, or one in `one_in` of them in a debug build: which ones, `PROPTEST_RNG_SEED` tells,
+/// and `.ci/run` takes others with each commit.
 pub(crate) fn tried(number: u8, one_in: u8) -> Vec<u8> {
     if !cfg!(debug_assertions) {
         return (0..number).collect();

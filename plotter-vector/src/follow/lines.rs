@@ -337,9 +337,9 @@ mod tests {
     /// Where lines are drawn in a window. A bound on a mean that only all of them keep is tried with all.
     const POSITIONS: [u8; 12] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11];
 
-    /// How far places that are found lie beside the lines drawn, in twelve positions within 90 px: at most, and the
-    /// mean of the positions' greatest distances; and how far a drawn place is from all that are found, at most. In
-    /// a debug build in three of them.
+    /// How far places that are found lie beside the lines drawn, in twelve positions within 90 px: at most, and
+    /// the mean of the positions' greatest distances; and how far a drawn place is from all that are found, at
+    /// most. In a debug build in three of them.
     fn off(pen_px: f64, drawn: &dyn Fn(f64, PxPoint) -> Vec<Vec<PxPoint>>) -> [f64; 3] {
         off_in(&tried(12, 4), pen_px, drawn)
     }
