@@ -188,9 +188,9 @@ fn the_line_is_that_of_no_machine_in_every_language() {
     }
 }
 
-/// Follows a ring on a machine to which something happens on the way: it ends with these words, what was
-/// followed is kept, and nothing was drawn.
-fn ends_in_the_middle(happens: impl FnOnce(&mut Simulated), words: [&str; 2]) {
+/// Follows a ring on a machine to which something happens behind so many rows of its list of moves: it ends
+/// with these words, and nothing was drawn. The report.
+fn ends_behind(least: usize, happens: impl FnOnce(&mut Simulated), words: [&str; 2]) -> Value {
     let run = Run::new("");
     let image = picture(run.folder.path(), ring);
     let mut simulated = Simulated::new(&run.machine, "grbl", "10");
@@ -200,7 +200,7 @@ fn ends_in_the_middle(happens: impl FnOnce(&mut Simulated), words: [&str; 2]) {
     let output = std::thread::scope(|scope| {
         let led = scope.spawn(|| run_example("follow", &arguments));
         let until = Instant::now() + FOR_EVER;
-        while rows() < 60 && !led.is_finished() {
+        while rows() < least && !led.is_finished() {
             assert!(Instant::now() < until, "it does not begin");
             std::thread::sleep(Duration::from_millis(20));
         }
@@ -213,21 +213,30 @@ fn ends_in_the_middle(happens: impl FnOnce(&mut Simulated), words: [&str; 2]) {
     assert!(said.contains("(before picture ") && said.contains(" mm)"), "{said}");
     let value = report(Path::new(&run.report));
     assert_eq!(value["finished"], Value::Bool(false));
-    assert!(value["path_points"].as_array().unwrap().len() > 5 && rows() >= 60, "{value}");
+    assert!(rows() >= least, "{value}");
     let sent = sent(Path::new(&run.log));
     assert!(sent.contains("G0 X") && !sent.contains("M3"), "{sent}"); // it only looked
+    value
 }
 
 #[test]
 fn an_alarm_in_the_middle_ends_it() {
     let pressed = |simulated: &mut Simulated| writeln!(simulated.keyboard, "press x-min").unwrap();
-    ends_in_the_middle(pressed, ["the machine was stopped:", "alarm"]);
+    ends_behind(20, pressed, ["the machine was stopped:", "alarm"]);
 }
 
 #[test]
 fn a_reset_in_the_middle_ends_it() {
     let reset = |simulated: &mut Simulated| writeln!(simulated.keyboard, "restart").unwrap();
-    ends_in_the_middle(reset, ["switched off or reset on its way", "home"]);
+    let value = ends_behind(60, reset, ["switched off or reset on its way", "home"]);
+    assert!(value["path_points"].as_array().unwrap().len() > 5, "what was followed is kept: {value}");
+}
+
+/// It stands while a window is looked at, and is reset there.
+#[test]
+fn a_reset_between_two_ways_ends_it() {
+    let reset = |simulated: &mut Simulated| writeln!(simulated.keyboard, "restart").unwrap();
+    ends_behind(20, reset, ["switched off or reset on its way", "home"]);
 }
 
 #[test]
@@ -238,13 +247,13 @@ fn silence_in_the_middle_ends_it() {
         let process = simulated.child.id().to_string();
         assert!(Command::new("kill").args(["-STOP", &process]).status().unwrap().success());
     };
-    ends_in_the_middle(silenced, ["nothing comes from the machine", "cable"]);
+    ends_behind(20, silenced, ["nothing comes from the machine", "cable"]);
 }
 
 #[test]
 fn a_line_that_is_closed_in_the_middle_ends_it() {
     let killed = |simulated: &mut Simulated| simulated.child.kill().unwrap();
-    ends_in_the_middle(killed, ["line", "tcp:"]);
+    ends_behind(20, killed, ["line", "tcp:"]);
 }
 
 /// The lines that the host has sent, without its questions between their bytes.

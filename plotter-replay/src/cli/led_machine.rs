@@ -40,6 +40,9 @@ pub struct LedPort<'a> {
 pub struct LedMachine {
     session: Session,
     name: String,
+    /// What was said of it last before it was led. What greets after that has forgotten where it is, though it
+    /// may have stood between two ways when it did.
+    said_before: Option<(Duration, String)>,
 }
 
 /// Why a machine did not go where it was led.
@@ -119,7 +122,7 @@ impl LedMachine {
             let recording = recording(header_of(machine, protocol, None))?;
             (Session::open(targets.line, None, Some(recording), None, targets.settings), targets.name)
         };
-        let led = Self { session, name };
+        let mut led = Self { session, name, said_before: None };
         let until = Instant::now() + HEARD_WITHIN;
         while led.session.state() == State::Connecting {
             if Instant::now() >= until {
@@ -128,6 +131,7 @@ impl LedMachine {
             }
             std::thread::sleep(LOOK_EVERY);
         }
+        led.said_before = led.session.messages().pop();
         Ok(led)
     }
 
@@ -207,14 +211,14 @@ impl LedMachine {
                 _ => {}
             }
             let said = self.session.messages();
-            let is_said = |notice: MachineNotice| {
+            let is_said = |notice: MachineNotice, known: &Option<(Duration, String)>| {
                 let words = notice.to_string();
                 said.iter().rev().take_while(|said| Some(*said) != known.as_ref()).any(|said| said.1 == words)
             };
-            if is_said(MachineNotice::Silent) {
+            if is_said(MachineNotice::Silent, &known) {
                 return Err(LedError::Silent);
             }
-            if is_said(MachineNotice::Greeted) {
+            if is_said(MachineNotice::Greeted, &self.said_before) {
                 return Err(LedError::Restarted);
             }
             let now = self.session.by_hand();
