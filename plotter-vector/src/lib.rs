@@ -4,8 +4,6 @@
 
 mod disjoint_sets;
 mod parallel;
-#[cfg(test)]
-mod tried_cases;
 
 pub mod areas;
 mod centreline;

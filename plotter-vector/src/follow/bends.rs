@@ -91,6 +91,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn a_wall_and_a_thinner_one_meet_where_their_middles_do() {
         let at = |x, y| PxPoint::new(x, y);
         // A thick wall, at the corner of which a thin one goes on, and a third one begins.
@@ -105,6 +106,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn each_arm_of_a_corner_has_its_own_width() {
         let corner = PxPoint::new(150.2, 149.7);
         for turn in [80.0_f64, 90.0, 110.0] {

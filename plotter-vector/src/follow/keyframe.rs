@@ -431,6 +431,7 @@ mod tests {
 
     /// Twelve lines of 4 px with 4 px between them: nothing but their ends tells the way along them.
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn the_ends_of_hatching_tell_the_way_along_it() {
         let hatch: Vec<_> =
             (0..12).map(|i| 90.4 + 8.0 * f64::from(i)).map(|x| line((x, 300.1), (x + 60.0, 560.6))).collect();

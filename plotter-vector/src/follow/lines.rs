@@ -328,30 +328,21 @@ fn clipped(places: &[PxPoint], is_trusted: &[bool]) -> Vec<Piece> {
 mod tests {
     use super::*;
     use crate::follow::{CameraSettings, Paper, Route, SimulatedCamera};
-    use crate::tried_cases::tried;
 
     fn at_angle(at: PxPoint, angle: f64, way_px: f64) -> PxPoint {
         PxPoint::new(at.x + way_px * angle.cos(), at.y + way_px * angle.sin())
     }
 
-    /// Where lines are drawn in a window. A bound on a mean that only all of them keep is tried with all.
-    const POSITIONS: [u8; 12] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11];
-
-    /// How far places that are found lie beside the lines drawn, in twelve positions within 90 px: at most, and
-    /// the mean of the positions' greatest distances; and how far a drawn place is from all that are found, at
-    /// most. In a debug build in three of them.
+    /// How far places that are found lie beside the lines drawn, in twelve positions within 90 px: at most, and the mean of the
+    /// positions' greatest distances; and how far a drawn place is from all that are found, at most.
     fn off(pen_px: f64, drawn: &dyn Fn(f64, PxPoint) -> Vec<Vec<PxPoint>>) -> [f64; 3] {
-        off_in(&tried(12, 4), pen_px, drawn)
-    }
-
-    fn off_in(positions: &[u8], pen_px: f64, drawn: &dyn Fn(f64, PxPoint) -> Vec<Vec<PxPoint>>) -> [f64; 3] {
-        off_of(positions, &|turn, at| drawn(turn, at).into_iter().map(|line| (line, pen_px)).collect())
+        off_of(&|turn, at| drawn(turn, at).into_iter().map(|line| (line, pen_px)).collect())
     }
 
     /// The same of lines with the width of each, px.
-    fn off_of(positions: &[u8], drawn: &dyn Fn(f64, PxPoint) -> Vec<(Vec<PxPoint>, f64)>) -> [f64; 3] {
+    fn off_of(drawn: &dyn Fn(f64, PxPoint) -> Vec<(Vec<PxPoint>, f64)>) -> [f64; 3] {
         let (mut worst, mut sum, mut missed) = (0.0_f64, 0.0, 0.0_f64);
-        for &k in positions {
+        for k in 0..12_u8 {
             let at = PxPoint::new(150.3 + 0.13 * f64::from(k), 149.7 + 0.31 * f64::from(k));
             let strokes = drawn(0.37 + 0.523 * f64::from(k), at);
             let lines: Vec<_> = strokes.iter().map(|(line, _)| line.clone()).collect();
@@ -370,10 +361,11 @@ mod tests {
             (worst, sum) = (worst.max(greatest), sum + greatest);
             missed = missed.max(apart(&fine, &Route::of(&found)));
         }
-        [worst, sum / positions.len() as f64, missed]
+        [worst, sum / 12.0, missed]
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn tips_and_corners_are_where_they_are() {
         for (degrees, most) in
             [(12.0, 0.4), (18.0, 0.4), (26.0, 0.4), (35.0, 0.4), (50.0, 0.5), (90.0, 0.8), (120.0, 0.2)]
@@ -387,6 +379,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn crossings_and_tees_are_straight() {
         for degrees in [20.0, 30.0, 45.0, 60.0, 90.0] {
             let angle = f64::to_radians(degrees);
@@ -400,9 +393,10 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn a_thick_curve_stays_round_where_thin_lines_cross_it() {
         for (thick_px, most_mean_px) in [(10.0, 0.5), (12.0, 0.9)] {
-            let off = off_of(&POSITIONS, &|turn, at| {
+            let off = off_of(&|turn, at| {
                 let middle = at_angle(at, turn, 150.0);
                 let on_arc =
                     |angle: f64, radius: f64| at_angle(middle, turn + core::f64::consts::PI + angle, radius);
@@ -416,6 +410,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn curves_that_touch_stay_curves() {
         // Two circles of 70 px, side by side, and one on a straight line.
         let circle = |middle: PxPoint| -> Vec<PxPoint> {
@@ -423,11 +418,10 @@ mod tests {
                 .map(|k| at_angle(middle, core::f64::consts::TAU * f64::from(k) / 120.0, 70.0))
                 .collect()
         };
-        let circles = off_in(&POSITIONS, 5.0, &|turn, at| {
-            vec![circle(at_angle(at, turn, 70.0)), circle(at_angle(at, turn, -70.0))]
-        });
+        let circles =
+            off(5.0, &|turn, at| vec![circle(at_angle(at, turn, 70.0)), circle(at_angle(at, turn, -70.0))]);
         assert!(circles[0] < 0.7 && circles[1] < 0.3 && circles[2] < 1.8, "{circles:?}");
-        let on_line = off_in(&POSITIONS, 5.0, &|turn, at| {
+        let on_line = off(5.0, &|turn, at| {
             let along = turn + core::f64::consts::FRAC_PI_2;
             vec![
                 circle(at_angle(at, turn, 70.0)),
@@ -438,6 +432,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn curves_that_end_in_one_tip_reach_it() {
         // Quarters of circles of 45 px, which touch where they end: straight lines along them meet 14 px before.
         let tip = off(4.0, &|turn, at| {
@@ -453,6 +448,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn a_line_that_ends_a_little_behind_another_is_straight() {
         for degrees in [45.0, 70.0, 90.0] {
             let off = off(5.0, &|turn, at| {
@@ -480,6 +476,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn a_line_that_bends_where_another_ends_has_its_corner() {
         // The line itself turns by 14 degrees.
         let off = off(5.0, &|turn, at| {
@@ -490,6 +487,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn turns_to_the_next_line_are_square_or_round() {
         for pitch_px in [8.0, 10.0, 12.0] {
             let turn = |turn: f64, at: PxPoint, is_round: bool| {
@@ -510,6 +508,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn two_corners_after_each_other_are_where_they_are() {
         for pitch_px in [28.0, 40.0] {
             let off = off(5.0, &|turn, at| {
@@ -521,6 +520,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn thick_rings_cross_without_corners() {
         // They meet at 56 degrees, and their ink is one for 17 px.
         let off = off(8.0, &|turn, at| {
@@ -536,6 +536,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn a_narrow_curve_of_a_thick_line_has_no_corners() {
         let off = off(10.0, &|turn, at| {
             let arm = |side: f64| {
@@ -548,6 +549,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn a_line_ends_in_the_middle_of_a_wider_one() {
         for k in 0..12_u8 {
             let (at, turn) = (PxPoint::new(150.3, 149.7), 0.37 + 0.523 * f64::from(k));
@@ -567,6 +569,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn a_line_that_ends_before_another_ends_there() {
         for k in 0..12_u8 {
             let (at, turn) = (PxPoint::new(150.3, 149.7), 0.37 + 0.523 * f64::from(k));
@@ -586,6 +589,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn a_narrow_curve_has_no_corners() {
         let off = off(5.0, &|turn, at| {
             vec![(0..40_u8).map(|k| at_angle(at, turn + 0.1 * f64::from(k), 15.0)).collect()]
@@ -594,6 +598,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn a_curve_goes_on_round_where_a_line_crosses_it() {
         for radius in [25.0, 40.0, 70.0, 110.0] {
             let off = off(4.0, &|turn, at| {

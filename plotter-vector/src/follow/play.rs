@@ -350,6 +350,7 @@ mod tests {
 
     /// An axis that loses 3 px at each turn, seen exactly after each move.
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn the_play_is_known_after_two_turns() {
         let (mut play, mut command, mut pushed) = (Play::default(), 0.0_f64, 0.0_f64);
         let mut go = |play: &mut Play, wanted: f64| -> f64 {

@@ -211,6 +211,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn equal_points_are_taken_out_one_by_one() {
         let place = |_: u32| PxPoint::new(3.0, 4.0);
         let mut tree = PointTree::new(30_000, &place);

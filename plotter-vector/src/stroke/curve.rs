@@ -598,6 +598,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn the_distance_is_that_of_the_nearest_place_of_many() {
         for bulge in [0.1, 0.6, 1.0, 2.0, -0.3, -3.5] {
             let arc = Arc::new(at(3.0, 4.0), at(20.0, 9.0), bulge).unwrap();

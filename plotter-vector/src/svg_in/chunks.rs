@@ -211,6 +211,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn the_pieces_of_a_file_draw_what_it_draws() {
         let text = file(3 * NODES / 2, "<text>ink</text>");
         let document = Document::parse(&text).unwrap();

@@ -304,6 +304,7 @@ fn chain_of_rules(length: u32, rectangles: usize) -> String {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn what_is_refused_is_told_with_a_remedy() {
     let whole = file(LINE);
     let nested = |depth| file(&format!("{}{}", "<g>".repeat(depth), "</g>".repeat(depth)));

@@ -248,6 +248,7 @@ fn pale_paper_with_noise_is_paper() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn colours_smeared_as_jpeg_does_stay_on_their_strokes() {
     let strokes = four_pens();
     let mut pixels = draw(260, 260, Rgb::WHITE, &strokes);
@@ -296,6 +297,7 @@ fn black_and_grey_are_told_apart_by_a_palette() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn given_pens_may_have_faded() {
     let strokes = four_pens();
     let given = palette(&[Rgb([255, 0, 0]), Rgb([0, 0, 255]), Rgb([40, 40, 40]), Rgb([0, 160, 70])]);
@@ -307,6 +309,7 @@ fn given_pens_may_have_faded() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn as_many_pens_are_found_as_are_asked_for_and_there() {
     let strokes = four_pens();
     let picture = picture(260, 260, &strokes);
@@ -349,6 +352,7 @@ fn a_sheet_without_ink_has_one_pen_that_draws_nothing() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_stroke_crossed_at_any_angle_from_20_degrees_is_made_whole() {
     for degrees in (20..=90).step_by(7) {
         let turn = f64::from(degrees).to_radians();
@@ -452,6 +456,7 @@ fn pens_in_uneven_light_are_those_of_an_even_one() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_ruling_of_squared_paper_is_no_pen() {
     let strokes = four_pens();
     let mut pixels = draw(260, 260, Rgb::WHITE, &strokes);

@@ -383,6 +383,7 @@ mod tests {
     const ASKEW: [(f64, f64); 4] = [(60.0, 55.0), (345.0, 70.0), (370.0, 470.0), (35.0, 455.0)];
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn a_sheet_on_a_table_is_found_to_parts_of_a_pixel() {
         Scene::new(ASKEW).assert_found(CORNER_PX);
         // Turned by a third of a right angle.
@@ -397,6 +398,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn what_covers_a_corner_or_lies_beside_the_sheet_does_not_move_it() {
         // A hand as dark as the table over the lower left corner.
         let over = |x: f64, y: f64| (libm::hypot(x - 30.0, y - 470.0) < 90.0).then_some(120.0);
@@ -418,6 +420,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn what_is_no_sheet_is_not_found() {
         let even = Gray::new(WIDTH, HEIGHT, vec![230; (WIDTH * HEIGHT) as usize]).unwrap();
         assert_eq!(SheetQuad::find(&even), Err(NoSheetQuad::NothingBeside));

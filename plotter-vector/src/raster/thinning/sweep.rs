@@ -246,7 +246,6 @@ fn three(row: &[u64], at: usize) -> (u64, u64, u64) {
 mod tests {
     use super::*;
     use crate::picture::Pixel;
-    use crate::tried_cases::tried;
 
     const ALL: [Step; 11] = [
         Step::GuoHallFirst,
@@ -353,13 +352,14 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
     fn passes_by_turns_forget_no_word() {
         const TURNS: [&[Step]; 2] = [
             &[Step::GuoHallFirst, Step::CornersRising, Step::GuoHallSecond],
             &[Step::GuoHallFirst, Step::CornersFalling, Step::GuoHallSecond],
         ];
-        for seed in tried(40, 8) {
-            let mut ink = noise(400, 30, 250, seed.into());
+        for seed in 0..40 {
+            let mut ink = noise(400, 30, 250, seed);
             let mut expected = ink.clone();
             let mut sweeper = Sweeper::new(&ink);
             for steps in TURNS.into_iter().cycle().take(12) {
