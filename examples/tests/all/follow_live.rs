@@ -188,8 +188,14 @@ fn the_line_is_that_of_no_machine_in_every_language() {
     }
 }
 
-/// Follows a ring on a machine to which something happens behind so many rows of its list of moves: it ends
-/// with these words, and nothing was drawn. The report.
+/// Follows a ring on a machine to which something happens on the way: it ends with these words, what was
+/// followed is kept, and nothing was drawn.
+fn ends_in_the_middle(happens: impl FnOnce(&mut Simulated), words: [&str; 2]) {
+    let report = ends_behind(60, happens, words);
+    assert!(report["path_points"].as_array().unwrap().len() > 5, "{report}");
+}
+
+/// The same behind so many rows of its list of moves, at which nothing may have been followed yet; the report.
 fn ends_behind(least: usize, happens: impl FnOnce(&mut Simulated), words: [&str; 2]) -> Value {
     let run = Run::new("");
     let image = picture(run.folder.path(), ring);
@@ -222,14 +228,13 @@ fn ends_behind(least: usize, happens: impl FnOnce(&mut Simulated), words: [&str;
 #[test]
 fn an_alarm_in_the_middle_ends_it() {
     let pressed = |simulated: &mut Simulated| writeln!(simulated.keyboard, "press x-min").unwrap();
-    ends_behind(20, pressed, ["the machine was stopped:", "alarm"]);
+    ends_in_the_middle(pressed, ["the machine was stopped:", "alarm"]);
 }
 
 #[test]
 fn a_reset_in_the_middle_ends_it() {
     let reset = |simulated: &mut Simulated| writeln!(simulated.keyboard, "restart").unwrap();
-    let value = ends_behind(60, reset, ["switched off or reset on its way", "home"]);
-    assert!(value["path_points"].as_array().unwrap().len() > 5, "what was followed is kept: {value}");
+    ends_in_the_middle(reset, ["switched off or reset on its way", "home"]);
 }
 
 /// It stands while a window is looked at, and is reset there.
@@ -247,13 +252,13 @@ fn silence_in_the_middle_ends_it() {
         let process = simulated.child.id().to_string();
         assert!(Command::new("kill").args(["-STOP", &process]).status().unwrap().success());
     };
-    ends_behind(20, silenced, ["nothing comes from the machine", "cable"]);
+    ends_in_the_middle(silenced, ["nothing comes from the machine", "cable"]);
 }
 
 #[test]
 fn a_line_that_is_closed_in_the_middle_ends_it() {
     let killed = |simulated: &mut Simulated| simulated.child.kill().unwrap();
-    ends_behind(20, killed, ["line", "tcp:"]);
+    ends_in_the_middle(killed, ["line", "tcp:"]);
 }
 
 /// The lines that the host has sent, without its questions between their bytes.

@@ -333,8 +333,9 @@ mod tests {
         PxPoint::new(at.x + way_px * angle.cos(), at.y + way_px * angle.sin())
     }
 
-    /// How far places that are found lie beside the lines drawn, in twelve positions within 90 px: at most, and the mean of the
-    /// positions' greatest distances; and how far a drawn place is from all that are found, at most.
+    /// How far places that are found lie beside the lines drawn, in twelve positions within 90 px: at most, and
+    /// the mean of the positions' greatest distances; and how far a drawn place is from all that are found, at
+    /// most.
     fn off(pen_px: f64, drawn: &dyn Fn(f64, PxPoint) -> Vec<Vec<PxPoint>>) -> [f64; 3] {
         off_of(&|turn, at| drawn(turn, at).into_iter().map(|line| (line, pen_px)).collect())
     }
