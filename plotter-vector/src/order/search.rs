@@ -437,7 +437,7 @@ fn move_after(
 
 #[cfg(test)]
 mod tests {
-    use super::super::sites::Visit;
+    use super::super::sites::{RING_PLACES, Visit};
     use super::*;
 
     fn at(x: i32, y: i32) -> PxPoint {
@@ -513,7 +513,11 @@ mod tests {
             visits.push(2 * site);
         }
         // A square beside the middle of the row, drawn last and from its far corner.
-        sites.push_ring(&[(99, 61), (69, 31), (99, 1), (129, 31)].map(|(x, y)| (at(x, y), 0)), 1);
+        sites.push_ring(
+            &[(99, 61), (69, 31), (99, 1), (129, 31)].map(|(x, y)| (at(x, y), 0)),
+            1,
+            RING_PLACES,
+        );
         visits.push(40);
         let (order, length) = settled(&(sites, visits));
         assert_eq!(order.iter().position(|site| *site == 20), Some(10), "{order:?}");

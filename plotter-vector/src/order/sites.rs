@@ -9,7 +9,7 @@ use crate::stroke::PxPoint;
 /// McGeoch, "The traveling salesman problem: a case study in local optimization", 1997, section 3.3).
 pub(crate) const NEIGHBOURS: usize = 8;
 
-/// Most places of a ring that the search considers, and of all rings; of very many rings each has two.
+/// Most places of a ring that a search considers, and of all rings; of very many rings each has two.
 pub(crate) const RING_PLACES: usize = 12;
 const ALL_RING_PLACES: usize = 240_000;
 
@@ -96,10 +96,10 @@ impl<'a> Sites<'a> {
         self.add(Site::OneWay, [(from.into(), 0), (to.into(), 0)].into_iter());
     }
 
-    /// Adds one of so many rings (or dots); its places are some of these, evenly chosen, each with the vertex
-    /// before.
-    pub(crate) fn push_ring<P: Into<Stop> + Copy>(&mut self, ring: &[(P, u32)], rings: usize) {
-        let few = (ALL_RING_PLACES / rings.max(1)).clamp(2, RING_PLACES).min(ring.len());
+    /// Adds one of so many rings (or dots); its places are at most so many of these, evenly chosen, each with
+    /// the vertex before.
+    pub(crate) fn push_ring<P: Into<Stop> + Copy>(&mut self, ring: &[(P, u32)], rings: usize, most: usize) {
+        let few = (ALL_RING_PLACES / rings.max(1)).clamp(2, most.max(2)).min(ring.len());
         let places = (0..few).filter_map(|k| ring.get(k * ring.len() / few.max(1)).copied());
         self.add(Site::Ring, places.map(|(place, vertex)| (place.into(), vertex)));
     }
@@ -266,7 +266,7 @@ mod tests {
     fn a_place_knows_each_near_thing_once_by_its_nearest_place() {
         let mut sites = Sites::new(&[]);
         sites.push_line((at(0), at(1)));
-        sites.push_ring(&[(at(7), 0), (at(5), 1), (at(6), 2)], 1);
+        sites.push_ring(&[(at(7), 0), (at(5), 1), (at(6), 2)], 1, RING_PLACES);
         sites.push_one_way((at(9), at(30)));
         let near = sites.neighbours();
         assert_eq!(near[1], [3, 5, NONE, NONE, NONE, NONE, NONE, NONE]);
