@@ -42,7 +42,7 @@ pub enum Protocol {
     Marlin,
     /// HPGL on a serial pen plotter with a buffer, as HP's 7475A
     Hpgl,
-    /// The EBB of the `AxiDraw`, both motors on one belt
+    /// The EBB of the `AxiDraw`, both motors on one belt; x goes along its short axis, y along its long one
     Ebb,
     /// The EBB of the `EggBot`, each motor with an axis
     Eggbot,

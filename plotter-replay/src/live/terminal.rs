@@ -33,8 +33,10 @@ pub struct Heading {
 /// Shows a session in the terminal until it ends or the user quits; says whether he did. Enter starts, space
 /// pauses and resumes, Esc stops, c clears, q quits. By hand the arrows move the machine by the step that 1, 2
 /// and 3 choose (0.1, 1, 10 mm), u and d lift and lower its pen, h leads it home, l unlocks it, n or + draws
-/// the next operation only, o says that it is at the origin. On a machine of targets the space bar gives a
-/// pulse in a direction of chance before the drawing begins, as the published program has it.
+/// the next operation only, o says that it is at the origin. Behind a colon all else is typed that the page
+/// can ask for, in its words and numbers ([`Command::from_name`]): `:jog 1 -1 30`, `:go 10 20`, `:feed 80`,
+/// `:circle 50 50 20 0 30 0.05`. On a machine of targets the space bar gives a pulse in a direction of chance
+/// before the drawing begins, as the published program has it.
 ///
 /// # Errors
 ///
@@ -43,9 +45,10 @@ pub fn run(session: &Session, heading: &Heading) -> io::Result<bool> {
     let mut terminal = ratatui::try_init()?;
     let is_lines = session.look(|view| view.hosted.is_some());
     let mut step_mm = 10.0;
+    let mut typed = Typed::default();
     let result = (|| {
         loop {
-            session.look(|view| terminal.draw(|frame| draw(frame, view, heading)).map(|_| ()))?;
+            session.look(|view| terminal.draw(|frame| draw(frame, view, heading, &typed)).map(|_| ()))?;
             if session.state().is_final() {
                 return Ok(false);
             }
@@ -60,6 +63,7 @@ pub fn run(session: &Session, heading: &Heading) -> io::Result<bool> {
             match key.code {
                 _ if interrupted => return Ok(true),
                 KeyCode::Esc => session.command(Command::Stop),
+                code if typed.takes(code) => typed.take(code).into_iter().for_each(|it| session.command(it)),
                 KeyCode::Enter => session.command(Command::Start),
                 KeyCode::Char('c') => session.command(Command::Clear),
                 KeyCode::Char('q') => return Ok(true),
@@ -80,6 +84,55 @@ pub fn run(session: &Session, heading: &Heading) -> io::Result<bool> {
     })();
     ratatui::try_restore()?;
     result
+}
+
+/// Most characters of what is typed: the longest command has seven numbers.
+const MOST_TYPED: usize = 80;
+
+/// What is typed behind a colon.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Typed {
+    words: Option<String>,
+    /// What was entered and is no command.
+    unknown: Option<String>,
+}
+
+impl Typed {
+    /// Whether a key is for it: a colon begins, and all up to the end of the line belongs to it.
+    const fn takes(&self, key: KeyCode) -> bool {
+        self.words.is_some() || matches!(key, KeyCode::Char(':'))
+    }
+
+    /// Takes a key; the command, once it is entered.
+    fn take(&mut self, key: KeyCode) -> Option<Command> {
+        let Some(words) = &mut self.words else {
+            *self = Self { words: Some(String::new()), unknown: None };
+            return None;
+        };
+        match key {
+            KeyCode::Char(character) if words.len() < MOST_TYPED => words.push(character),
+            KeyCode::Backspace if words.pop().is_none() => self.words = None,
+            KeyCode::Enter => {
+                let words = self.words.take().filter(|words| !words.trim().is_empty())?;
+                let command = Command::from_name(words.trim());
+                self.unknown = command.is_none().then_some(words);
+                return command;
+            }
+            _ => {}
+        }
+        None
+    }
+
+    /// What stands in place of the keys.
+    fn text(&self) -> String {
+        match (&self.words, &self.unknown) {
+            (Some(words), _) => format!(":{words}_"),
+            (None, Some(words)) => format!(
+                "`{words}` is no command: jog X Y F, go X Y, feed P, line X Y X Y F, circle X Y R N F"
+            ),
+            (None, None) => String::new(),
+        }
+    }
 }
 
 /// A count in a direction of chance.
@@ -121,20 +174,20 @@ fn by_hand(key: KeyCode, step_mm: &mut f64) -> Option<Hand> {
     }
 }
 
-fn draw(frame: &mut Frame<'_>, view: &View, heading: &Heading) {
+fn draw(frame: &mut Frame<'_>, view: &View, heading: &Heading, typed: &Typed) {
     let [top, middle, bottom] =
         Layout::vertical([Constraint::Length(3), Constraint::Min(10), Constraint::Length(10)])
             .areas(frame.area());
     let [sheet, numbers] = Layout::horizontal([Constraint::Min(30), Constraint::Length(34)]).areas(middle);
     let [x, y] = Layout::horizontal([Constraint::Fill(1), Constraint::Fill(1)]).areas(bottom);
-    draw_heading(frame, top, view, heading);
+    draw_heading(frame, top, view, heading, typed);
     draw_sheet(frame, sheet, view, heading);
     draw_numbers(frame, numbers, view);
     draw_response(frame, x, view, "X (mm)", |at| at.x);
     draw_response(frame, y, view, "Y (mm)", |at| at.y);
 }
 
-fn draw_heading(frame: &mut Frame<'_>, area: Rect, view: &View, heading: &Heading) {
+fn draw_heading(frame: &mut Frame<'_>, area: Rect, view: &View, heading: &Heading, typed: &Typed) {
     let [words, progress] = Layout::vertical([Constraint::Length(2), Constraint::Length(1)]).areas(area);
     let colour = match view.state.name() {
         "stopped" | "locked" | "failed" => Color::Red,
@@ -155,14 +208,16 @@ fn draw_heading(frame: &mut Frame<'_>, area: Rect, view: &View, heading: &Headin
         _ => view.messages.back().map_or_else(String::new, |(_, text)| text.clone()),
     };
     let keys = if view.hosted.is_some() {
-        "Esc EMERGENCY STOP  Enter start  Space pause/resume  arrows 1 2 3 u d h l n o by hand  q quit"
+        "Esc EMERGENCY STOP  Enter start  Space pause/resume  arrows 1 2 3 u d h l n o : by hand  q quit"
     } else {
-        "Esc EMERGENCY STOP  Enter start  Space pause/resume  arrows 1 2 3 u d n o by hand  c clear  q quit"
+        "Esc EMERGENCY STOP  Enter start  Space pause/resume  arrows 1 2 3 u d n o : by hand  c clear  q quit"
     };
-    // What a person has to do comes before what was said last.
+    // What a person types, and has to do, comes before what was said last.
     let wants = view.wants.clone();
-    let second =
-        [wants, message].into_iter().find(|words| !words.is_empty()).unwrap_or_else(|| keys.to_owned());
+    let second = [typed.text(), wants, message]
+        .into_iter()
+        .find(|words| !words.is_empty())
+        .unwrap_or_else(|| keys.to_owned());
     frame.render_widget(Paragraph::new(vec![first, Line::raw(second)]), words);
     if let Some(plan) = view.plan {
         #[expect(clippy::cast_precision_loss, reason = "targets below 2^53")]
@@ -317,6 +372,39 @@ mod tests {
     }
 
     #[test]
+    fn what_is_typed_behind_a_colon_is_a_command_of_the_page() {
+        let mut typed = Typed::default();
+        assert!(!typed.takes(KeyCode::Char('u')) && typed.takes(KeyCode::Char(':')));
+        let mut enter = |words: &str| {
+            let mut command = None;
+            for key in words.chars().map(KeyCode::Char).chain([KeyCode::Enter]) {
+                assert!(typed.takes(key), "{words}");
+                command = typed.take(key);
+            }
+            (command, typed.text())
+        };
+        let jog = Hand::Jog(Vec2::new(1.0, -1.0), 30.0);
+        assert_eq!(enter(":jog 1 -1 30"), (Some(Command::Hand(jog)), String::new()));
+        assert_eq!(enter(":  "), (None, String::new()));
+        assert_eq!(enter(":pause"), (Some(Command::Pause), String::new()));
+        let (command, told) = enter(":circle 50 50 20");
+        assert!(command.is_none() && told.starts_with("`circle 50 50 20` is no command"), "{told}");
+        // The word is forgotten with the next one, and a line that is taken back is left.
+        for key in [':', 'u'] {
+            assert_eq!(typed.take(KeyCode::Char(key)), None);
+        }
+        assert_eq!(typed.text(), ":u_");
+        for key in [KeyCode::Backspace; 2] {
+            assert_eq!(typed.take(key), None);
+        }
+        assert_eq!(typed, Typed::default());
+        for key in [':'; 1].into_iter().chain(['x'; 1_000]) {
+            assert_eq!(typed.take(KeyCode::Char(key)), None);
+        }
+        assert_eq!(typed.words.map(|words| words.len()), Some(MOST_TYPED));
+    }
+
+    #[test]
     fn the_terminal_shows_sheet_numbers_and_response() {
         let mut terminal = Terminal::new(TestBackend::new(110, 36)).unwrap();
         let heading = Heading {
@@ -325,7 +413,7 @@ mod tests {
             area_mm: [0.0, 0.0, 10.0, 10.0],
         };
         let view = view();
-        terminal.draw(|frame| draw(frame, &view, &heading)).unwrap();
+        terminal.draw(|frame| draw(frame, &view, &heading, &Typed::default())).unwrap();
         insta::assert_snapshot!(terminal.backend());
     }
 
@@ -343,7 +431,7 @@ mod tests {
     fn the_pen_is_up_before_the_start() {
         let mut terminal = Terminal::new(TestBackend::new(110, 36)).unwrap();
         let view = View::new(PlotterSettings::default(), State::Ready, None);
-        terminal.draw(|frame| draw(frame, &view, &Heading::default())).unwrap();
+        terminal.draw(|frame| draw(frame, &view, &Heading::default(), &Typed::default())).unwrap();
         let shown = terminal.backend().to_string();
         let pen = shown.lines().find_map(|line| line.split_once("pen ")).unwrap().1;
         assert!(pen.trim_start().starts_with("up "), "{pen}");
@@ -354,7 +442,7 @@ mod tests {
         let view = view();
         for (wide, high) in [(1, 1), (20, 5), (40, 12)] {
             let mut terminal = Terminal::new(TestBackend::new(wide, high)).unwrap();
-            terminal.draw(|frame| draw(frame, &view, &Heading::default())).unwrap();
+            terminal.draw(|frame| draw(frame, &view, &Heading::default(), &Typed::default())).unwrap();
         }
     }
 }
