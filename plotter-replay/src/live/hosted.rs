@@ -226,7 +226,9 @@ impl<'a, W: Write> HostedEngine<'a, W> {
             Hand::Feed(percent) => return self.host.ask(now, Request::Feed { percent }),
             Hand::Shape { shape, speed_mm_s, allowed_mm: allowed } => {
                 allowed_mm = allowed;
-                shape.ops(speed_mm_s)
+                let mut ops = shape.ops(speed_mm_s);
+                ops.extend(ops.last().and_then(|last| last.target()).map(|to| PlotOp::Travel { to })); // lifted
+                ops
             }
             Hand::Hold(_) | Hand::Pulse(..) | Hand::Origin(_) => return Err(NotNow::NoWord),
         };
@@ -255,9 +257,7 @@ impl<'a, W: Write> HostedEngine<'a, W> {
                 Ok(()) => {
                     self.by_hand.pop_front();
                     if self.by_hand.is_empty() {
-                        let to = op.target().unwrap_or_default();
-                        self.shape.ends_at = Some(to);
-                        let _ = self.host.ask(now, Request::ByHand(PlotOp::Travel { to })); // lifted at its end
+                        self.shape.ends_at = op.target();
                     }
                 }
                 Err(NotNow::Busy) => return,

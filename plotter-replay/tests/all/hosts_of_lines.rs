@@ -447,15 +447,7 @@ fn a_killed_host_s_change_of_pens_is_asked_for_again_and_no_other() {
 /// Languages without a question that is answered in the middle of anything are asked behind the last line.
 #[test]
 fn a_way_by_hand_ends_with_the_place_that_the_machine_says() {
-    let pen = PenControl::Commands { up: "G4 P0\nM280 P0 S160", down: "G4 P0\nM280 P0 S90" };
-    let options = WriteOptions { pen, settle: Duration::ZERO, ..WriteOptions::default() };
-    let hosts: [(Spoken, Box<dyn MachineHost>); 4] = [
-        (Spoken::Grbl, grbl(Vec::new())),
-        (Spoken::Marlin, boxed(Marlin::new(options))),
-        (Spoken::MDraw, boxed(MDraw::new("M1 160", "M1 90"))),
-        (Spoken::Hpgl, boxed(Hpgl::new())),
-    ];
-    for (spoken, host) in hosts {
+    for (spoken, host) in of_each_language() {
         let mut desk = Desk::new(host, &machine(), spoken, "");
         desk.until(&[HostState::Ready], LONG);
         desk.wait(Duration::from_secs(3)); // with all that it asks at first
@@ -476,6 +468,55 @@ fn a_way_by_hand_ends_with_the_place_that_the_machine_says() {
         });
         assert_eq!(said.next_back(), Some(Pen::Down), "{spoken:?}");
     }
+}
+
+/// A circle has more lines than a host has room for: each goes out when there is room, once.
+#[test]
+fn a_shape_by_hand_is_whole_however_many_lines_it_has() {
+    let place = |n: u32| {
+        let (sin, cos) = (f64::from(n) * core::f64::consts::TAU / 90.0).sin_cos();
+        Point::new((3000.0 + 1200.0 * cos).round() / 100.0, (2000.0 + 1200.0 * sin).round() / 100.0)
+    };
+    let draw = |n| PlotOp::Draw { to: place(n), feed_mm_s: Some(30.0) };
+    let ops: Vec<PlotOp> =
+        core::iter::once(PlotOp::Travel { to: place(0) }).chain((1..=90).map(draw)).collect();
+    for (spoken, host) in of_each_language() {
+        let mut desk = Desk::new(host, &machine(), spoken, "");
+        desk.until(&[HostState::Ready], LONG);
+        desk.wait(Duration::from_secs(3));
+        for op in &ops {
+            let end = desk.now() + LONG;
+            loop {
+                let now = desk.now();
+                match desk.host.ask(now, Request::ByHand(*op)) {
+                    Ok(()) => break,
+                    Err(why) => assert!(why == NotNow::Busy && now < end, "{spoken:?}: {op:?}: {why}"),
+                }
+                desk.round();
+            }
+        }
+        desk.wait(Duration::from_secs(60));
+        let mm = |steps: i32| f64::from(steps) / 87.58;
+        let ink: Vec<Point> = desk.ink().into_iter().map(|(x, y)| Point::new(mm(x), mm(y))).collect();
+        for op in &ops {
+            let to = op.target().unwrap();
+            let off_mm = ink.iter().map(|at| at.distance(to)).fold(f64::INFINITY, f64::min);
+            assert!(off_mm < 0.03, "{spoken:?}: {to:?} is {off_mm} mm from what is drawn");
+        }
+        assert!(desk.host.status().at.is_some_and(|at| at.distance(place(90)) < 0.03), "{spoken:?}");
+    }
+}
+
+/// A host without a drawing of each language of lines.
+fn of_each_language() -> [(Spoken, Box<dyn MachineHost>); 4] {
+    let pen = PenControl::Commands { up: "G4 P0\nM280 P0 S160", down: "G4 P0\nM280 P0 S90" };
+    let options = WriteOptions { pen, settle: Duration::ZERO, ..WriteOptions::default() };
+    [
+        (Spoken::Grbl, grbl(Vec::new())),
+        (Spoken::Marlin, boxed(Marlin::new(options))),
+        (Spoken::MDraw, boxed(MDraw::new("M1 160", "M1 90"))),
+        (Spoken::Hpgl, boxed(Hpgl::new())),
+    ]
 }
 
 fn boxed<L: Language + 'static>(language: L) -> Box<dyn MachineHost> {

@@ -3,7 +3,7 @@
 use super::super::language::{Language, OpText};
 use super::super::line_queue::Purpose;
 use super::super::{NotNow, Request};
-use super::{LineHost, Phase, Then};
+use super::{LineHost, Phase, ROOM_FOR_OP, Then};
 use crate::{Pen, PlotOp};
 
 impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
@@ -21,6 +21,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                 if self.is_interrupted {
                     return Err(NotNow::Busy);
                 }
+                self.has_room()?;
                 self.language.begin();
                 self.language.holds(self.trail.sent_holds());
                 if self.index > 0 {
@@ -48,6 +49,12 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             }
             Phase::Ready | Phase::Paused | Phase::PenWanted(_) | Phase::SheetWanted | Phase::Done => Ok(()),
         }
+    }
+
+    /// Whether all lines that one thing takes have room. A language takes what it has written for sent, so that
+    /// nothing is written that has none.
+    pub(super) const fn has_room(&self) -> Result<(), NotNow> {
+        if self.queue.room() < ROOM_FOR_OP { Err(NotNow::Busy) } else { Ok(()) }
     }
 
     /// Text that a person has asked for, if there is a word for it.
@@ -115,6 +122,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             }
             Request::Unlock => match self.phase {
                 Phase::Locked(_) | Phase::Stopped => {
+                    self.has_room()?;
                     let has_word = self.language.unlock(&mut text);
                     if has_word {
                         self.by_hand(&text, true, Purpose::Unlocking)
@@ -134,6 +142,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                         self.index > 0
                     }
                 };
+                self.has_room()?;
                 let has_word = self.language.home(&mut text);
                 self.by_hand(&text, has_word, Purpose::Homing)?;
                 self.phase = Phase::Homing(was_paused);
@@ -141,6 +150,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
             }
             Request::ByHand(op) => {
                 self.is_free()?;
+                self.has_room()?;
                 self.language.write(op, &mut text).map_err(|_| NotNow::OutOfRange)?;
                 self.by_hand(&text, true, Purpose::ByHand)?;
                 self.led = Some(0);
@@ -156,6 +166,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                 if !(by.length() <= 1e6 && feed_mm_s > 0.0 && feed_mm_s <= 1e6) {
                     return Err(NotNow::OutOfRange);
                 }
+                self.has_room()?;
                 self.ends_jog = false;
                 let has_word = self.language.jog(self.at.unwrap_or_default(), by, feed_mm_s, &mut text);
                 self.by_hand(&text, has_word, Purpose::Jog)?;
@@ -174,6 +185,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
                 if !(place.x.abs() <= 1e6 && place.y.abs() <= 1e6) {
                     return Err(NotNow::OutOfRange);
                 }
+                self.has_room()?;
                 let has_word = self.language.stands_at(place, &mut text);
                 self.by_hand(&text, has_word, Purpose::ByHand)?;
                 self.knows_place = true;

@@ -3,10 +3,7 @@
 use super::super::language::{Language, OpText};
 use super::super::line_queue::{MOST_LINE, Purpose};
 use super::super::{MachineNotice, Words};
-use super::{
-    HAND_RESTS_AFTER, HEARS_OUT, LineHost, MOST_ASKS, MOST_STRAYS, Phase, QUESTIONS_FOR_REST, ROOM_FOR_OP,
-    Then,
-};
+use super::{HAND_RESTS_AFTER, HEARS_OUT, LineHost, MOST_ASKS, MOST_STRAYS, Phase, QUESTIONS_FOR_REST, Then};
 use crate::{Pen, PlotOp};
 use core::time::Duration;
 
@@ -42,7 +39,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
     /// Writes operations until there is enough on the way.
     pub(super) fn write(&mut self) {
         while let Phase::Drawing(left) = self.phase {
-            if self.queue.room() < ROOM_FOR_OP {
+            if self.has_room().is_err() {
                 return;
             }
             let given = match self.trail.next() {
