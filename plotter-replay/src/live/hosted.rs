@@ -344,9 +344,9 @@ impl<'a, W: Write> HostedEngine<'a, W> {
     /// Once the machine rests behind a shape: says so if that is farther from its end than was allowed.
     fn check_shape(&mut self) {
         let now = self.now();
-        let Some(at) = self.host.status().at else { return };
+        let HostStatus { at: Some(at), is_led, .. } = self.host.status() else { return };
         let (was, since) = *self.rests.get_or_insert((at, now));
-        if was != at {
+        if was != at || is_led {
             self.rests = Some((at, now));
             return;
         }

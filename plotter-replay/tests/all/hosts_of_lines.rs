@@ -495,7 +495,13 @@ fn a_shape_by_hand_is_whole_however_many_lines_it_has() {
                 desk.round();
             }
         }
-        desk.wait(Duration::from_secs(60));
+        // It counts as under way until the place behind it is told.
+        assert!(desk.host.status().is_led, "{spoken:?}");
+        let end = desk.now() + LONG;
+        while desk.host.status().is_led && desk.now() < end {
+            desk.round();
+        }
+        desk.wait(Duration::from_secs(10)); // Grbl's lines are answered when they are taken
         let mm = |steps: i32| f64::from(steps) / 87.58;
         let ink: Vec<Point> = desk.ink().into_iter().map(|(x, y)| Point::new(mm(x), mm(y))).collect();
         for op in &ops {

@@ -201,6 +201,9 @@ pub struct HostStatus {
     pub sent: u64,
     /// Operations that the machine is known to have carried out.
     pub done: u64,
+    /// Whether something by hand is under way as far as the host knows: not sent, not answered, or the place
+    /// behind it not told by a machine that tells none on the way.
+    pub is_led: bool,
     /// Speed of the drawing, per cent of what it asks for.
     pub feed_percent: u8,
     /// What the machine says of itself.

@@ -397,6 +397,7 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> MachineHost for EbbHost<
             pen: self.pen,
             sent: self.sent_ops,
             done: if self.phase == Phase::Done { self.index } else { self.trail.done() },
+            is_led: self.way.is_some() || self.goes_to.is_some(),
             feed_percent: self.feed_percent,
             limits: MachineLimits { steps_per_mm: [steps_per_mm; 2], ..MachineLimits::default() },
         }

@@ -418,6 +418,7 @@ impl<L: Language, I: Iterator<Item = PlotOp>> MachineHost for LineHost<L, I> {
             pen: self.trail.pen().unwrap_or(self.pen),
             sent: self.sent_ops,
             done: if self.phase == Phase::Done { self.index } else { self.trail.done() },
+            is_led: self.is_led(),
             feed_percent: self.feed_percent,
             limits: self.language.limits(),
         }

@@ -238,6 +238,13 @@ impl<L: Language, I: Iterator<Item = PlotOp>> LineHost<L, I> {
         is_due.then(|| self.stirred.saturating_add(HAND_RESTS_AFTER))
     }
 
+    /// Whether something by hand is under way, as far as is known.
+    pub(super) fn is_led(&self) -> bool {
+        let is_asked =
+            L::QUERY.is_none() && self.led.is_some_and(|asks| L::RESTS_BY_REPORT || asks < MOST_ASKS);
+        self.is_free().is_ok() && (is_asked || !self.queue.is_out() || self.queue.in_flight().lines > 0)
+    }
+
     /// Asks it then.
     pub(super) fn ask_for_place(&mut self, now: Duration) {
         if self.place_due().is_none_or(|due| now < due) {
