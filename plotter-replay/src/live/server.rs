@@ -195,7 +195,8 @@ impl Site {
         loop {
             let now = Instant::now();
             if now >= next {
-                next = now + UPDATE_EVERY;
+                // (one that was late does not make all that follow it later)
+                next = (next + UPDATE_EVERY).max(now);
                 let is_over = self.session.state().is_final();
                 let update = self.session.update(&mut cursor).to_string();
                 if socket.send(Message::text(update)).is_err() {
