@@ -167,16 +167,18 @@ fn looked_at(session: &Session, page: LivePage, targets: u64) -> (f64, usize) {
         .unwrap();
     let (mut socket, _) = tungstenite::client(request, stream).unwrap();
     session.command(Command::Start);
-    let (began, mut updates, mut longest) = (Instant::now(), 0_u32, 0);
+    let (began, mut updates, mut longest) = (Instant::now(), Vec::new(), 0);
     while let Ok(message) = socket.read() {
         if let tungstenite::Message::Text(text) = message {
-            updates += 1;
+            updates.push(Instant::now());
             longest = longest.max(text.len());
         }
     }
     let took = began.elapsed();
     assert_eq!((session.wait(Duration::ZERO), session.reached()), (State::Done, targets));
-    let rate = f64::from(updates) / took.as_secs_f64();
+    updates.pop(); // the last one comes with the end
+    let periods = u32::try_from(updates.len() - 1).unwrap();
+    let rate = f64::from(periods) / (*updates.last().unwrap() - updates[0]).as_secs_f64();
     println!("{targets} targets in {took:.1?}: {rate:.1} updates/s, at most {longest} bytes");
     (rate, longest)
 }
