@@ -95,6 +95,9 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// [`PlanError::Mode`] for a mode that is not among them, and as [`Planner::new`].
     pub fn with_modes(settings: PlannerSettings) -> Result<Self, PlanError> {
         settings.check::<M>()?;
+        if settings.vector_jerk().is_some() {
+            return Err(PlanError::Averaging { quantity: "a planner by itself" });
+        }
         Ok(Self::of_checked(&settings))
     }
 

@@ -102,6 +102,7 @@ fn settings() -> impl Strategy<Value = PlannerSettings> {
                 junction_deviation_mm,
                 resolution_mm,
                 allowance_mm,
+                ..PlannerSettings::default()
             }
         },
     )
@@ -424,6 +425,7 @@ fn a_way_nearly_straight_back_is_a_stop_within_a_tolerance() {
         junction_deviation_mm: 0.039_348_899,
         resolution_mm: 0.0,
         allowance_mm: 0.0,
+        ..PlannerSettings::default()
     };
     check(settings, &ops, &[]).unwrap();
 }
