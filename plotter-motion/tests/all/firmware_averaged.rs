@@ -282,7 +282,7 @@ fn an_auditor_finds_the_limits_kept_and_the_pen_within_the_tolerance() {
 
     // Every place of the pen is near the drawing, and the drawing near the pen.
     let (mut asked, mut at, mut was_down) = (Vec::<Vec<Point>>::new(), Point::ORIGIN, false);
-    for op in chords(drawing().into_iter(), 1e-4) {
+    for op in chords(drawing(), 1e-4) {
         let is_down = matches!(op, PlotOp::Draw { .. });
         if is_down && !was_down {
             asked.push(vec![at]);
