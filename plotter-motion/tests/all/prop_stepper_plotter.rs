@@ -452,7 +452,9 @@ proptest! {
             }
             motors = made.position;
             carriage = StepPoint::new(motors.x - gap[0], motors.y - gap[1]);
-            prop_assert!(outside(carriage) <= 0, "{:?}", carriage);
+            // Within the tolerance the path itself may lie outside.
+            let most = if averages { from_mm(0.05, 87.58) + 1 } else { 0 };
+            prop_assert!(outside(carriage) <= most, "{:?}", carriage);
         }
         prop_assert_eq!(carriage, StepPoint::new(from_mm(12.0, 87.58), from_mm(34.0, 87.58)));
     }
