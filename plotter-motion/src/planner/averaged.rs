@@ -169,6 +169,8 @@ impl PlannerSettings {
             },
             accel_limit,
             jerk_mm_s3: None,
+            #[cfg(feature = "averaged-steps")]
+            jerk_limit: super::JerkLimit::Path,
             ..*self
         };
         Averaged { settings, window_s }

@@ -145,7 +145,7 @@ impl<const N: usize> AveragedSteps<N> {
     #[must_use]
     pub fn rates_hz(&self, clock_hz: u32) -> [f32; 2] {
         #[expect(clippy::cast_precision_loss, reason = "to 2^-23 of it")]
-        [self.x, self.y].map(|motor| motor.slope as f32 / self.window as f32 * clock_hz as f32)
+        [self.x, self.y].map(|motor| motor.slope as f32 * clock_hz as f32 / self.window as f32)
     }
 
     /// Takes the next event of the plan.
