@@ -13,10 +13,10 @@ use crate::stepper_bench::{Bench, distance_mm};
 use core::time::Duration;
 use plotter_motion::firmware::stepper_plotter::{
     Activity, Command, Dialect, Drivers, Link, Motion, Setting, SettingProblem, StepperPlotterSettings,
-    StepsAhead,
 };
 use plotter_motion::kinematics::{Backlash, Cartesian, MotorScale};
-use plotter_motion::planner::{Action, ExactOnly, JerkLimit};
+use plotter_motion::planner::{Action, ExactOnly, JerkLimit, PlanError};
+use plotter_motion::protocol::hosts::{EbbHost, EbbHostSettings};
 use plotter_motion::stepgen::{
     AveragedSteps, Estimator, MotorEvent, StepGenSettings, TimedEvent, timed_events,
 };
@@ -523,6 +523,17 @@ fn settings_that_cannot_be_averaged_are_refused_in_words() {
     insta::assert_snapshot!(refused(StepperPlotterSettings { planner: little, ..settings() }), @"a jerk of 100 mm/s³ as a vector: at these speeds it must be at least 164, or more steps are averaged than there is room for; allow more jerk or less speed, or limit it along the path");
     insta::assert_snapshot!(settings().checked::<ExactOnly>().unwrap_err(), @"path asks for what is not built in: build with AllModes, or leave the path exact, the jerk without a limit, the axes without play and the laser away");
     insta::assert_snapshot!(plotter_motion::Planner::<16>::new(settings().planner).unwrap_err(), @r#"the jerk is limited as a vector by averaging the steps, which does not go with a planner by itself: limit it along the path, in a machine's file by planner.jerk_limit = "path""#);
+    let motor = MotorScale { steps_per_mm: 80.0, inverted: false };
+    let motors = Cartesian::new(motor, motor).unwrap();
+    let ebb = EbbHostSettings { planner: settings().planner, ..EbbHostSettings::default() };
+    let of_the_board = EbbHost::new(motors, ebb, drawing().into_iter()).err().unwrap();
+    assert!(
+        matches!(of_the_board, PlanError::Averaging { quantity: "the moves of an EBB" }),
+        "{of_the_board}"
+    );
+    let laser = StepGenSettings { laser: true, ..StepGenSettings::default() };
+    let estimated = Estimator::<16>::new(settings().planner, laser).unwrap_err();
+    assert!(matches!(estimated, PlanError::Averaging { quantity: "a laser" }), "{estimated}");
 
     // What the host sets is looked at alike: 600 steps/mm of both motors at 90 mm/s for 52 ms.
     let finer = |value| Setting { number: 100, value }.checked(&settings());
@@ -530,10 +541,11 @@ fn settings_that_cannot_be_averaged_are_refused_in_words() {
     assert_eq!(finer(600.0).unwrap().x_steps_per_mm, 600.0);
 }
 
-#[cfg(feature = "third-motor")]
+#[cfg(all(feature = "step-ahead", feature = "third-motor"))]
 #[test]
 fn a_third_axis_is_refused_and_two_halves_are() {
-    use plotter_motion::firmware::{StepperPlotter, stepper_plotter::ZAxis};
+    use plotter_motion::firmware::StepperPlotter;
+    use plotter_motion::firmware::stepper_plotter::{StepsAhead, ZAxis};
     let z = StepperPlotterSettings { z: Some(ZAxis::default()), ..settings() };
     insta::assert_snapshot!(z.checked::<plotter_motion::planner::ThreeAxes>().unwrap_err(), @r#"the jerk is limited as a vector by averaging the steps, which does not go with a third axis: limit it along the path, in a machine's file by planner.jerk_limit = "path""#);
     let plotter = StepperPlotter::new(settings(), SafetyGate::new(LimitSwitches::RELEASED, false)).unwrap();
