@@ -573,3 +573,37 @@ fn a_host_that_changes_the_limits_gets_them() {
     assert!(bench.made.last().unwrap().at - began > slow + Duration::from_millis(100));
     assert!(stands_at(&bench, &settings(), [30.0, 0.0]));
 }
+
+/// Homing steps by itself, at its own rates; what comes after it begins from rest.
+#[test]
+fn after_homing_the_same_lines_take_the_same_steps() {
+    let settings = StepperPlotterSettings { homing: true, ..settings() };
+    let lines = "M3\nG1 X8 Y3 F3000\nG1 X2 Y4\nM5\n";
+    let steps = |bench: &mut Bench| {
+        let before = bench.made.len();
+        let from = bench.plotter.position();
+        bench.ask(lines);
+        let made = &bench.made[before..];
+        let began = made[0].at;
+        let way = |at: StepPoint| (at.x - from.x, at.y - from.y);
+        made.iter().map(|made| (made.at - began, way(made.position))).collect::<Vec<_>>()
+    };
+    let mut bench = Bench::new(settings);
+    bench.ask("");
+    bench.ask("$X\n");
+    let first = steps(&mut bench);
+    bench.ask("G1 X20 Y20 F3000\n");
+    let homed = bench.ask("$H\n");
+    assert!(homed.contains("ok"), "{homed}");
+    assert_eq!(bench.plotter.position(), StepPoint::default());
+    let again = steps(&mut bench);
+    // The same places, each within the rounding of its time to a microsecond.
+    let when = |steps: &[(Duration, (i32, i32))], x: i32| steps.iter().find(|step| step.1.0 == x).unwrap().0;
+    for x in [1, 50, 300, 600] {
+        let apart = when(&first, x).abs_diff(when(&again, x));
+        assert!(apart <= Duration::from_micros(3), "{apart:?} at {x}");
+    }
+    let (first, again) = (first.last().unwrap(), again.last().unwrap());
+    assert!(first.0.abs_diff(again.0) <= Duration::from_micros(3), "{first:?} {again:?}");
+    assert_eq!(first.1, again.1);
+}
