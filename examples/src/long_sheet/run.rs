@@ -1,7 +1,8 @@
 //! [`LongSheetRun`]: a drawing divided into frames, and each frame drawn on a simulated sheet.
 
 use crate::long_sheet::FrameChange;
-use plotter_motion::{Axis, Machine, Planner, PlannerSettings, PlotOp, Point, Vec2, planner::Action};
+use plotter_motion::stepgen::{PlotTimer, StepGenSettings};
+use plotter_motion::{Axis, Machine, Planner, PlannerSettings, PlotOp, Point, Vec2};
 use plotter_stitch::{
     Crossing, Field, FoldTest, Frame, FrameLayout, FrameTransform, LongSheet, Optics, PaperSearch,
     ReferenceLines, SheetSettings, StripJoin,
@@ -364,14 +365,14 @@ impl<M: JoinFrames> LongSheetRun<M> {
             .sheet
             .draw(Some(MARK_PEN), || frame.into_iter().flat_map(Frame::ops))
             .map_err(|error| format!("frame {} cannot be drawn: {error}", self.drawn))?;
-        let mut planner = Planner::<BLOCKS>::new(self.machine.planner).map_err(|error| error.to_string())?;
+        let averaged = self.machine.planner.planned().map_err(|error| error.to_string())?;
+        let mut planner = Planner::<BLOCKS>::new(averaged.settings).map_err(|error| error.to_string())?;
+        let mut timer = PlotTimer::new(StepGenSettings::default()).averaged(&averaged);
         let LongSheetMachine { area, beyond_mm, .. } = self.machine;
         let mut figures = self.frames;
-        let drain = |planner: &mut Planner<BLOCKS>, figures: &mut FrameFigures| {
+        let drain = |planner: &mut Planner<BLOCKS>, timer: &mut PlotTimer| {
             while let Some(action) = planner.next_action() {
-                if let Action::Phase(phase) = action {
-                    figures.motion_s += f64::from(phase.duration_s);
-                }
+                timer.push(&action);
             }
         };
         for op in ops {
@@ -381,13 +382,14 @@ impl<M: JoinFrames> LongSheetRun<M> {
             }
             figures.segments += u64::from(matches!(op, PlotOp::Draw { .. } | PlotOp::DrawArc { .. }));
             if !planner.has_room() {
-                drain(&mut planner, &mut figures);
+                drain(&mut planner, &mut timer);
             }
             planner.push(op).map_err(|error| error.to_string())?;
         }
-        drain(&mut planner, &mut figures);
+        drain(&mut planner, &mut timer);
         planner.finish().map_err(|error| error.to_string())?;
-        drain(&mut planner, &mut figures);
+        drain(&mut planner, &mut timer);
+        figures.motion_s += timer.time().motion.as_secs_f64();
         self.frames = figures;
         let Some(frame) = frame else {
             self.ends.clear();

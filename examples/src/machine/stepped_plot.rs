@@ -120,16 +120,26 @@ pub struct SteppedPlot {
 }
 
 impl SteppedPlot {
-    /// A machine that stands at the origin. Its clock counts microseconds: `timing.clock_hz` is ignored.
+    /// A machine that stands at the origin. Its clock counts microseconds: `timing.clock_hz` is ignored. Its
+    /// motion is averaged where the jerk is limited as a vector.
     ///
     /// # Errors
     ///
-    /// A setting out of range.
+    /// A setting out of range; for a jerk as a vector a laser, or more steps in the window than have room.
     pub fn new(
         settings: PlannerSettings,
         timing: StepGenSettings,
         motors: [MotorScale; 2],
     ) -> Result<Self, String> {
+        let of = settings.planned().map_err(|error| error.to_string())?;
+        let averaged = AveragedSteps::of(&of, CLOCK_HZ).map(Box::new);
+        if averaged.is_some() {
+            if timing.laser {
+                return Err(PlanError::Averaging { quantity: "a laser" }.to_string());
+            }
+            check_window(&of, motors)?;
+        }
+        let settings = of.settings;
         let planner = Planner::new(settings).map_err(|error| error.to_string())?;
         let kinematics = Cartesian::new(motors[0], motors[1]).map_err(|error| error.to_string())?;
         // Distances up to twice the allowed one, and up to two steps, are found fast. Greater ones are
@@ -144,7 +154,7 @@ impl SteppedPlot {
             planner,
             kinematics,
             steps: StepGen::new(kinematics, timing),
-            averaged: None,
+            averaged,
             deviation: PathDeviation::new(reach_mm.max(2.0 / coarsest)),
             audit: SpeedAudit::new(
                 Point::ORIGIN,
@@ -158,28 +168,6 @@ impl SteppedPlot {
             pen: Pen::Up,
             last_tick: 0,
         })
-    }
-
-    /// The same of a motion that is averaged, so that its jerk is limited as a vector.
-    ///
-    /// # Errors
-    ///
-    /// As with [`Self::new`]; more steps within the window than it has room for.
-    pub fn averaged(of: Averaged, timing: StepGenSettings, motors: [MotorScale; 2]) -> Result<Self, String> {
-        let Averaged { settings, window_s } = of;
-        let speed_mm_s = settings.speed_mm_s.max(settings.travel_speed_mm_s);
-        let steps = window_s * speed_mm_s * (motors[0].steps_per_mm + motors[1].steps_per_mm);
-        #[expect(clippy::cast_precision_loss, reason = "a power of two")]
-        let most = WINDOW_STEPS as f64;
-        if steps > most {
-            return Err(format!(
-                "averaging over {window_s:.3} s takes {steps:.0} steps at {speed_mm_s} mm/s, and {most} have room: allow \
-                 more jerk, a lower speed, or fewer steps to the millimetre"
-            ));
-        }
-        let averaged = AveragedSteps::new(of.window_ticks(CLOCK_HZ));
-        let plot = Self::new(settings, timing, motors)?;
-        Ok(Self { averaged: Some(Box::new(averaged)), ..plot })
     }
 
     /// Plans the next operation; meanwhile hands every event of the plot to `on_event`.
@@ -220,6 +208,7 @@ impl SteppedPlot {
         while !self.planner.has_room() && self.advance(on_event) {}
         self.planner.rest()?;
         while self.advance(on_event) {}
+        self.arrive(on_event);
         Ok(())
     }
 
@@ -231,7 +220,19 @@ impl SteppedPlot {
 
     /// When what has been planned is over.
     fn tick(&self) -> u64 {
-        self.steps.tick() + self.averaged.as_ref().map_or(0, |averaged| averaged.delay_ticks())
+        self.steps.tick() + self.later()
+    }
+
+    /// How much later than planned all is, because the motion is averaged.
+    fn later(&self) -> u64 {
+        self.averaged.as_ref().map_or(0, |averaged| averaged.delay_ticks())
+    }
+
+    /// The motors come to where all that was planned has ended.
+    fn arrive(&mut self, on_event: &mut impl FnMut(PlotEvent)) {
+        while let Some(event) = self.averaged.as_mut().and_then(|averaged| averaged.rest()) {
+            self.happens(event, on_event);
+        }
     }
 
     /// Runs until the machine stands, lifts the pen, and returns the figures of the plot.
@@ -244,13 +245,9 @@ impl SteppedPlot {
         self.planner.finish()?;
         self.deviation.lift();
         while self.advance(on_event) {}
-        // Without a pen that is lifted at the end the motors are still on their way.
-        while let Some(event) = self.averaged.as_mut().and_then(|averaged| averaged.rest()) {
-            self.happens(event, on_event);
-        }
+        self.arrive(on_event);
         let pen = self.pen;
         let tick = self.tick().max(self.last_tick);
-        self.figures.motion_s += seconds(tick - self.tick());
         self.audit.finish(tick, |moment| on_event(PlotEvent::Moment(moment, pen)));
         let (max_steps_off_drawing_mm, max_drawing_off_steps_mm) = self.deviation.most_mm();
         Ok(SteppedFigures {
@@ -259,6 +256,8 @@ impl SteppedPlot {
             accel_window_ms: self.audit.window_ms(),
             max_steps_off_drawing_mm,
             max_drawing_off_steps_mm,
+            // Each rest takes the window more over which motion is averaged.
+            motion_s: self.figures.motion_s + seconds(self.later()),
             total_s: seconds(tick),
             ..self.figures
         })
@@ -303,15 +302,15 @@ impl SteppedPlot {
                 self.happens(event, on_event);
                 continue;
             };
-            let later = averaged.delay_ticks();
             if averaged.push(event).is_err() {
                 return false;
             }
             while let Some(event) = self.averaged.as_mut().and_then(|averaged| averaged.next_event()) {
                 self.happens(event, on_event);
             }
-            let now_later = self.averaged.as_ref().map_or(later, |averaged| averaged.delay_ticks());
-            self.figures.motion_s += seconds(now_later - later);
+        }
+        if let (Action::Dwell(_), Some(averaged)) = (action, &mut self.averaged) {
+            averaged.arrive();
         }
         if is_motion {
             self.figures.motion_s += seconds(self.steps.tick() - before);
@@ -363,6 +362,22 @@ impl SteppedPlot {
     fn pen_position(&self) -> Point {
         self.kinematics.point_at(self.at.into())
     }
+}
+
+/// Refuses a window with more steps than have room.
+fn check_window(of: &Averaged, motors: [MotorScale; 2]) -> Result<(), String> {
+    let Averaged { settings, window_s } = of;
+    let speed_mm_s = settings.speed_mm_s.max(settings.travel_speed_mm_s);
+    let steps = window_s * speed_mm_s * (motors[0].steps_per_mm + motors[1].steps_per_mm);
+    #[expect(clippy::cast_precision_loss, reason = "a power of two")]
+    let most = WINDOW_STEPS as f64;
+    if steps <= most {
+        return Ok(());
+    }
+    Err(format!(
+        "averaging over {window_s:.3} s takes {steps:.0} steps at {speed_mm_s} mm/s, and {most} have room: allow more jerk, a \
+         lower speed, or fewer steps to the millimetre, or limit the jerk along the path"
+    ))
 }
 
 #[expect(clippy::cast_precision_loss, reason = "2^53 microseconds are 285 years")]

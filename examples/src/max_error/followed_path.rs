@@ -221,7 +221,7 @@ fn stepped(machine: &Machine, blend_mm: f64) -> Result<SteppedPlot, String> {
     } else {
         PathMode::Exact
     };
-    let settings = PlannerSettings { path, ..PlannerSettings::of(machine) };
+    let settings = PlannerSettings::of(machine).following(path);
     let motor = |steps_per_mm| MotorScale { steps_per_mm, inverted: false };
     let motors = [motor(config.x.stepper.steps_per_mm), motor(config.y.stepper.steps_per_mm)];
     SteppedPlot::new(settings, StepGenSettings::of(machine), motors)

@@ -46,7 +46,7 @@ pub struct StepperCommand {
     /// already [default: half the last digit of the file's numbers or a step, whichever is greater]
     #[arg(long, value_name = "A", value_parser = allowance, allow_negative_numbers = true)]
     pub(super) allowance_mm: Option<f64>,
-    /// Limits the jerk along the path too
+    /// Limits the jerk too
     #[arg(long)]
     pub(super) s_curve: bool,
     /// Greatest speed with the pen down and up, mm/s [default: the machine's, 45 and 90]
@@ -62,19 +62,13 @@ pub struct StepperCommand {
     /// distance [default: the machine's, 0.01]
     #[arg(long, value_name = "D", value_parser = not_negative, allow_negative_numbers = true)]
     pub(super) junction_deviation: Option<f64>,
-    /// Greatest jerk along the path, mm/s³; used with --s-curve [default: the machine's, 10000]
+    /// Greatest jerk, mm/s³; used with --s-curve [default: the machine's, 10000]
     #[arg(long, value_name = "J", value_parser = positive, allow_negative_numbers = true)]
     pub(super) jerk: Option<f64>,
-    /// Greatest jerk as a vector, mm/s³, in the mode tolerance: the motion is averaged over some hundredths
-    /// of a second, which takes part of the tolerance and more time
-    #[arg(
-        long,
-        value_name = "J",
-        value_parser = positive,
-        allow_negative_numbers = true,
-        conflicts_with_all = ["s_curve", "jerk", "estimate"]
-    )]
-    pub(super) jerk_vector: Option<f64>,
+    /// What the jerk is limited of; used with --s-curve [default: the machine's; if its file does not say,
+    /// vector in the mode tolerance, path in the mode exact]
+    #[arg(long, value_enum)]
+    pub(super) jerk_limit: Option<Limit>,
     /// Steps per millimetre of both motors [default: the machine's, 87.58]
     #[arg(long, value_name = "N", value_parser = steps_per_mm, allow_negative_numbers = true)]
     pub(super) steps_per_mm: Option<f64>,
@@ -114,6 +108,15 @@ pub(super) enum Mode {
     Exact,
     /// Corners rounded, and short lines joined, within the tolerance
     Tolerance,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Limit {
+    /// The whole motion, in the mode tolerance: it is averaged over some hundredths of a second, which takes
+    /// part of the tolerance, and time
+    Vector,
+    /// The motion along the path
+    Path,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

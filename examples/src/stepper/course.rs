@@ -1,7 +1,7 @@
 //! From the file to its figures.
 
 use super::built_in::built_in;
-use super::command::{Mode, StepperCommand};
+use super::command::{Limit, Mode, StepperCommand};
 use super::walk::{Writers, walk};
 use crate::drawings::{Diagnostic, Diagnostics, DrawingFile, Severity};
 use crate::machine::{BLOCKS, SteppedPlot};
@@ -9,9 +9,9 @@ use crate::shared::{at, read_file, write_file};
 use crate::stepper::{DrawnExtent, PlotFigures, SpeedChart, StepFile, SteppedPreview, SteppedReport};
 use plotter_motion::{
     Machine, MachineConfig, PathMode, Pen, PlannerSettings, Point,
-    config::{AccelChoice, MachineKind},
+    config::{AccelChoice, JerkChoice, MachineKind},
     kinematics::MotorScale,
-    planner::AccelLimit,
+    planner::{AccelLimit, JerkLimit},
     stepgen::{Estimator, StepGenSettings},
 };
 use std::path::Path;
@@ -47,17 +47,10 @@ pub(super) fn plot(arguments: &StepperCommand) -> Result<(), String> {
         check_drawn(&drawing, &extent, &said)?;
         extent.warn(&mut said);
         let figures = PlotFigures::Estimated(&time);
-        let report =
-            SteppedReport::new(&drawing, &machine, (&settings, None), motors, figures, &extent, &said);
+        let report = SteppedReport::new(&drawing, &machine, &settings, motors, figures, &extent, &said);
         return tell(arguments, &drawing, &report, &said);
     }
-    let mut plot = match arguments.jerk_vector {
-        None => SteppedPlot::new(settings, timing, motors)?,
-        Some(jerk_mm_s3) => {
-            let averaged = settings.averaged(jerk_mm_s3).map_err(|error| error.to_string())?;
-            SteppedPlot::averaged(averaged, timing, motors)?
-        }
-    };
+    let mut plot = SteppedPlot::new(settings, timing, motors)?;
     let mut writers = Writers {
         preview: arguments.svg.is_some().then(|| SteppedPreview::new(Point::ORIGIN, 1.0 / finest)),
         chart: arguments.speed_plot.is_some().then(SpeedChart::default),
@@ -87,8 +80,7 @@ pub(super) fn plot(arguments: &StepperCommand) -> Result<(), String> {
         steps.finish()?;
     }
     let figures = PlotFigures::Stepped(&figures);
-    let limits = (&settings, arguments.jerk_vector);
-    let report = SteppedReport::new(&drawing, &machine, limits, motors, figures, &extent, &said);
+    let report = SteppedReport::new(&drawing, &machine, &settings, motors, figures, &extent, &said);
     tell(arguments, &drawing, &report, &said)
 }
 
@@ -151,6 +143,14 @@ pub(super) fn machine(
         }
         (None, None) => {}
     }
+    // As in a machine's file: it is the vector within a tolerance, if nothing else is said.
+    settings.jerk_limit = match (arguments.jerk_limit, settings.path, config.planner.jerk_limit) {
+        (Some(Limit::Vector), ..) => JerkLimit::Vector,
+        (Some(Limit::Path), ..) | (None, PathMode::Exact, _) | (None, _, Some(JerkChoice::Path)) => {
+            JerkLimit::Path
+        }
+        (None, ..) => JerkLimit::Vector,
+    };
     if let Some(speed_mm_s) = arguments.max_speed {
         (settings.speed_mm_s, settings.travel_speed_mm_s) = (speed_mm_s, speed_mm_s);
         let stepper = &config.x.stepper;
@@ -168,10 +168,13 @@ pub(super) fn machine(
     }
     settings.accel_mm_s2 = arguments.accel.unwrap_or(settings.accel_mm_s2);
     settings.junction_deviation_mm = arguments.junction_deviation.unwrap_or(settings.junction_deviation_mm);
-    if arguments.s_curve || config.planner.s_curve && arguments.jerk_vector.is_none() {
+    if arguments.s_curve || config.planner.s_curve {
         settings.jerk_mm_s3 = Some(arguments.jerk.unwrap_or(config.planner.jerk_mm_s3));
-    } else if arguments.jerk.is_some() {
-        said.push(Diagnostic::new(Severity::Notice, "--jerk counts with --s-curve only".into()));
+    } else if arguments.jerk.is_some() || arguments.jerk_limit.is_some() {
+        said.push(Diagnostic::new(
+            Severity::Notice,
+            "--jerk and --jerk-limit count with --s-curve only".into(),
+        ));
     }
     Ok((machine, settings))
 }

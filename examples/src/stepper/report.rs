@@ -4,7 +4,7 @@ use crate::drawings::{Diagnostic, Diagnostics, DrawingFile, Language};
 use crate::machine::SteppedFigures;
 use crate::stepper::DrawnExtent;
 use plotter_motion::kinematics::MotorScale;
-use plotter_motion::{Machine, PathMode, PlannerSettings, stepgen::PlotTime};
+use plotter_motion::{Machine, PathMode, PlannerSettings, planner::JerkLimit, stepgen::PlotTime};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -89,20 +89,19 @@ struct Limits {
     speed_mm_s: f64,
     travel_speed_mm_s: f64,
     accel_mm_s2: f64,
-    /// Along the path.
     jerk_mm_s3: Option<f64>,
-    /// As a vector.
-    jerk_vector_mm_s3: Option<f64>,
+    /// What the jerk is limited of: `vector` or `path`.
+    jerk_limit: Option<&'static str>,
     junction_deviation_mm: f64,
 }
 
 impl SteppedReport {
-    /// The figures of a plot with these settings, this limit of the jerk as a vector, and these motors.
+    /// The figures of a plot with these settings and these motors.
     #[must_use]
     pub fn new(
         drawing: &DrawingFile,
         machine: &Machine,
-        (settings, jerk_vector_mm_s3): (&PlannerSettings, Option<f64>),
+        settings: &PlannerSettings,
         motors: [MotorScale; 2],
         figures: PlotFigures<'_>,
         extent: &DrawnExtent,
@@ -132,7 +131,10 @@ impl SteppedReport {
                 travel_speed_mm_s: settings.travel_speed_mm_s,
                 accel_mm_s2: settings.accel_mm_s2,
                 jerk_mm_s3: settings.jerk_mm_s3,
-                jerk_vector_mm_s3,
+                jerk_limit: settings.jerk_mm_s3.map(|_| match settings.jerk_limit {
+                    JerkLimit::Vector => "vector",
+                    JerkLimit::Path => "path",
+                }),
                 junction_deviation_mm: settings.junction_deviation_mm,
             },
             steps_per_mm: motors.map(|motor| motor.steps_per_mm),
@@ -165,9 +167,9 @@ impl SteppedReport {
         if let Some(allowance_mm) = self.allowance_mm.filter(|allowance_mm| *allowance_mm > 0.0) {
             let _ = write!(out, " give or take {} mm", (allowance_mm * 1e4).round() / 1e4);
         }
-        out.push_str(if self.s_curve { ", s-curve" } else { "" });
-        if let Some(jerk_mm_s3) = self.limits.jerk_vector_mm_s3 {
-            let _ = write!(out, ", averaged to {jerk_mm_s3} mm/s³");
+        if let (Some(jerk_mm_s3), Some(limit)) = (self.limits.jerk_mm_s3, self.limits.jerk_limit) {
+            let of = if limit == "path" { "along the path" } else { "as a vector" };
+            let _ = write!(out, ", a jerk of {jerk_mm_s3} mm/s³ {of}");
         }
         out.push_str(if self.estimated {
             ", estimated without steps

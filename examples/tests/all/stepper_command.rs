@@ -114,13 +114,27 @@ fn the_jerk_is_limited_as_a_vector_where_that_is_asked_for() {
     let measured = [&MEASURED[..6], &["--steps-per-mm", "1000", "--tolerance-mm", "0.05"]].concat();
     let options = [&[square.as_str()][..], &measured].concat();
     let plain = folder.stepper_report(&[&options[..], &["--steps", &plain_steps]].concat());
-    let limit = ["--jerk-vector", "20000", "--steps", &steps];
+    // Within a tolerance it is the vector, unless something else is said.
+    let limit = ["--s-curve", "--jerk", "20000", "--steps", &steps];
     let averaged = folder.stepper_report(&[&options[..], &limit].concat());
-    assert_eq!(averaged["limits"]["jerk_vector_mm_s3"], 20_000.0);
+    assert_eq!(averaged["limits"]["jerk_mm_s3"], 20_000.0);
+    assert_eq!(averaged["limits"]["jerk_limit"], "vector");
     assert_eq!(averaged["strokes"], plain["strokes"]);
     assert!(number(&averaged, "max_deviation_mm") <= 0.05 + 2.0 / 1000.0, "{averaged}");
     let ratio = number(&averaged, "time_s") / number(&plain, "time_s");
     assert!((1.1..2.0).contains(&ratio), "{ratio}");
+    // It is estimated without steps, too, and is what it was along the path if that is asked for.
+    let estimate = [&options[..], &limit[..3], &["--estimate"]].concat();
+    let estimated = folder.stepper_report(&estimate);
+    for figure in ["time_s", "time_with_pen_s", "draw_mm"] {
+        assert!(
+            (number(&estimated, figure) - number(&averaged, figure)).abs() < 1e-5,
+            "{estimated} {averaged}"
+        );
+    }
+    let along = folder.stepper_report(&[&options[..], &limit[..3], &["--jerk-limit", "path"]].concat());
+    assert_eq!(along["limits"]["jerk_limit"], "path");
+    assert!(number(&along, "time_s") < number(&averaged, "time_s"), "{along}");
     // Both end in the same place, and the jerk, by differences of places 12 ms apart, is what was asked for.
     let (end, jerk) = steps_seen(&steps);
     let (plain_end, plain_jerk) = steps_seen(&plain_steps);
@@ -134,11 +148,11 @@ fn the_jerk_is_limited_as_a_vector_where_that_is_asked_for() {
     assert!(end == [0, 0] && jerk <= 1.1 * 20_000.0, "{end:?}, {jerk} mm/s³");
     assert!(number(&travelled, "max_accel_mm_s2") <= 1.1 * 416.0, "{travelled}");
     // A corner of the exact mode is a jump of the velocity: no jerk is limited there.
-    let exact = [&[square.as_str(), "--mode", "exact"][..], &["--jerk-vector", "20000"]].concat();
+    let exact = [square.as_str(), "--mode", "exact", "--s-curve", "--jerk-limit", "vector"];
     let said = complaint("stepper", &exact);
     assert!(said.contains("the jerk as a vector can be limited within a tolerance only"), "{said}");
     // Hours of motion have no room.
-    let much = [&options[..], &["--jerk-vector", "1"]].concat();
+    let much = [&options[..], &["--s-curve", "--jerk", "1"]].concat();
     let said = complaint("stepper", &much);
     assert!(said.contains("allow more jerk"), "{said}");
 }

@@ -96,6 +96,14 @@ fn constant(settings: &StepperPlotterSettings) -> String {
         text =
             text.replace(&format!("{name}: {duration:?}"), &format!("{name}: Duration::from_nanos({nanos})"));
     }
+    // A firmware is built without the field that says what the jerk's limit limits, or with it.
+    let limit = format!("{:?}", settings.planner.jerk_limit);
+    text = text
+        .replace(
+            "planner: PlannerSettings {",
+            &format!("planner: plotter_motion::jerk_limited!({limit} PlannerSettings {{"),
+        )
+        .replace(&format!(", jerk_limit: {limit} }}"), " })");
     // That of a third axis has no convention.
     text = text
         .replace("pen: PenConvention::Some(", "pen: Some(")

@@ -4,7 +4,10 @@ use super::belt_check::check_belt;
 use super::error::Bound;
 use super::rules::rules;
 use super::transmission::check_transmission;
-use super::{AxisConfig, ConfigError, ControllerChoice, DriveChoice, KinematicsChoice, MachineConfig};
+use super::{
+    AxisConfig, ConfigError, ControllerChoice, DriveChoice, JerkChoice, KinematicsChoice, MachineConfig,
+    PathChoice,
+};
 
 /// A machine whose description has been checked: the only thing that the rest of the crate accepts.
 ///
@@ -48,6 +51,8 @@ impl Machine {
     /// - neither speed of the planner asks for more than its greatest rate;
     /// - the far corner of the area has a number of steps that 32 bits hold, and the area lies between the
     ///   limit switches that homing expects;
+    /// - a jerk that is limited as a vector goes with a tolerance, without a laser or a third axis, and is
+    ///   not so small that more steps would have to be averaged than there is room for.
     ///
     /// Where frames of a long sheet are drawn, each lies in the area with the windows at its borders,
     /// and the simulated motor has torque up to some rate, more than its friction.
@@ -80,6 +85,7 @@ impl Machine {
                 check_stepper_motor(&config)?;
                 check_stepper(&config.x, &X, config.area.width_mm, &config)?;
                 check_stepper(&config.y, &Y, config.area.height_mm, &config)?;
+                check_jerk(&config)?;
                 #[cfg(feature = "third-motor")]
                 check_third_axis(&config)?;
             }
@@ -191,6 +197,53 @@ fn check_control(config: &MachineConfig) -> Result<(), ConfigError> {
         "Hz",
         "a quarter of control.contouring.loop_hz: run the loop more often or estimate more slowly",
     )
+}
+
+/// A jerk that is limited as a vector goes with all else.
+fn check_jerk(config: &MachineConfig) -> Result<(), ConfigError> {
+    let planner = &config.planner;
+    let unfit = |remedy| Err(ConfigError::Unfit { key: "planner.jerk_limit", value: "vector", remedy });
+    if planner.mode == PathChoice::Exact && planner.jerk_limit == Some(JerkChoice::Vector) {
+        return unfit(
+            "goes with planner.mode = \"tolerance\" only: a corner that is passed through its vertex is a jump of the \
+             velocity; write \"path\", or leave it out",
+        );
+    }
+    if !planner.s_curve || planner.jerk_limit_in_force() != JerkChoice::Vector {
+        return Ok(());
+    }
+    if cfg!(not(feature = "averaged-steps")) {
+        return unfit("takes the feature averaged-steps of plotter-motion: build with it, or write \"path\"");
+    }
+    if config.laser.enabled {
+        return unfit(
+            "does not go with laser.enabled: the steps are averaged, and the laser's power would not follow; write \"path\"",
+        );
+    }
+    #[cfg(feature = "third-motor")]
+    if config.z.enabled {
+        return unfit(
+            "does not go with z.enabled: the steps are averaged, and the third axis would not follow; write \"path\"",
+        );
+    }
+    #[cfg(feature = "averaged-steps")]
+    if let Err(crate::planner::PlanError::Window { jerk_mm_s3, least_mm_s3 }) =
+        crate::PlannerSettings::of(&Machine { config: *config }).check_room(
+            config.x.stepper.steps_per_mm,
+            config.y.stepper.steps_per_mm,
+            crate::stepgen::AVERAGED_STEPS,
+        )
+    {
+        return demand(
+            "planner.jerk_mm_s3",
+            jerk_mm_s3,
+            (Bound::AtLeast, libm::ceil(least_mm_s3)),
+            "mm/s^3",
+            "or more steps are averaged than there is room for: allow more jerk, lower planner.speed_mm_s and \
+             planner.travel_speed_mm_s, or write planner.jerk_limit = \"path\"",
+        );
+    }
+    Ok(())
 }
 
 /// The keys of one axis that another value can contradict.

@@ -42,8 +42,8 @@ pub use machine_kind::MachineKind;
 pub use name::{FileName, MachineName, ShortText};
 pub use sheet::SheetConfig;
 pub use stepper::{
-    AccelChoice, DriveChoice, HomingConfig, LaserConfig, PathChoice, PenConfig, PenLift, PlannerConfig,
-    StepperConfig,
+    AccelChoice, DriveChoice, HomingConfig, JerkChoice, LaserConfig, PathChoice, PenConfig, PenLift,
+    PlannerConfig, StepperConfig,
 };
 #[cfg(feature = "third-motor")]
 pub use third_motor::{SecondMotorChoice, SecondMotorConfig, ZConfig};

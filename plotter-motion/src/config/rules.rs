@@ -113,7 +113,7 @@ const SIGN_OF_GAIN: &str = "for a motor that runs away swap its wires, not the s
 const DUTY_OF_255: &str = "duty counts in steps of 255, as the published gains do";
 
 /// Keys that the machine has once.
-static MACHINE: [Rule; 70] = [
+static MACHINE: [Rule; 71] = [
     Rule { key: "schema", form: Form::Whole(SCHEMA) },
     Rule { key: "name", form: Form::Text(super::MachineName::MAX_BYTES) },
     Rule { key: "drive", form: Form::Choice(&["dc", "stepper"]) },
@@ -263,6 +263,7 @@ static MACHINE: [Rule; 70] = [
     Rule { key: "planner.mode", form: Form::Choice(&["exact", "tolerance"]) },
     Rule { key: "planner.s_curve", form: Form::Switch },
     Rule { key: "planner.accel_limit", form: Form::Choice(&["vector", "axes"]) },
+    Rule { key: "planner.jerk_limit", form: Form::Choice(&["vector", "path"]) },
     number(
         "planner.path_tolerance_mm",
         |c| c.planner.path_tolerance_mm,

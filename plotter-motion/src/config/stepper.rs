@@ -75,6 +75,17 @@ pub enum AccelChoice {
     Axes,
 }
 
+/// Quantity that the greatest jerk limits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
+pub enum JerkChoice {
+    /// The jerk of the pen as a vector.
+    Vector,
+    /// The jerk along the path.
+    Path,
+}
+
 /// How moves are planned: `[planner]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
@@ -85,7 +96,7 @@ pub enum AccelChoice {
 pub struct PlannerConfig {
     /// Whether corners are passed exactly or rounded.
     pub mode: PathChoice,
-    /// Whether the jerk along the path is limited too.
+    /// Whether the jerk is limited too.
     pub s_curve: bool,
     /// How far the pen may be from the path with [`PathChoice::Tolerance`], mm.
     pub path_tolerance_mm: f64,
@@ -105,8 +116,23 @@ pub struct PlannerConfig {
     pub accel_x_mm_s2: f64,
     /// The same of the motor `y`.
     pub accel_y_mm_s2: f64,
-    /// Greatest jerk along the path, mm/s^3.
+    /// Quantity that the greatest jerk limits. If a file does not say, it is the vector with
+    /// [`PathChoice::Tolerance`]. With [`PathChoice::Exact`] it is along the path, always.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub jerk_limit: Option<JerkChoice>,
+    /// Greatest jerk, mm/s^3.
     pub jerk_mm_s3: f64,
+}
+
+impl PlannerConfig {
+    /// What the greatest jerk limits.
+    pub(crate) const fn jerk_limit_in_force(&self) -> JerkChoice {
+        match (self.mode, self.jerk_limit) {
+            (PathChoice::Exact, _) => JerkChoice::Path,
+            (PathChoice::Tolerance, Some(choice)) => choice,
+            (PathChoice::Tolerance, None) => JerkChoice::Vector,
+        }
+    }
 }
 
 impl Default for PlannerConfig {
@@ -124,6 +150,7 @@ impl Default for PlannerConfig {
             accel_mm_s2: 250.0,
             accel_x_mm_s2: 250.0,
             accel_y_mm_s2: 250.0,
+            jerk_limit: None,
             jerk_mm_s3: 10_000.0,
         }
     }

@@ -1,7 +1,7 @@
 //! [`PlannerSettings::averaged`]: what to plan with so that the average of the motion keeps a jerk as a
 //! vector.
 
-use super::settings::{AccelLimit, MOST_JERK};
+use super::settings::{AccelLimit, LEAST_TOLERANCE_MM, LIMITS, MOST_JERK};
 use super::{AllModes, PathMode, PlanError, PlannerSettings};
 
 /// Share of the tolerance that the average may take, the rest is for the corners. Less makes the window
@@ -14,7 +14,7 @@ const AVERAGE_SHARE: f64 = 0.6;
 pub struct Averaged {
     /// The limits to plan with: trapezoids, of an acceleration that may be lower than the machine's.
     pub settings: PlannerSettings,
-    /// Time over which places are averaged, s.
+    /// Time over which places are averaged, s; 0 if they are not.
     pub window_s: f64,
 }
 
@@ -64,7 +64,7 @@ impl PlannerSettings {
         let PathMode::Tolerance { path_tolerance_mm } = self.path else {
             return Err(PlanError::Corners { quantity: "the jerk as a vector" });
         };
-        let least = super::settings::LIMITS.0;
+        let least = LIMITS.0;
         if !(least..=MOST_JERK).contains(&jerk_mm_s3) {
             return Err(PlanError::Setting {
                 quantity: "jerk_mm_s3",
@@ -73,6 +73,70 @@ impl PlannerSettings {
                 most: MOST_JERK,
             });
         }
+        Ok(self.divided(path_tolerance_mm, jerk_mm_s3))
+    }
+
+    /// What to plan with for these settings: [`averaged`](Self::averaged) where they limit the jerk as a
+    /// vector. Else they are that themselves, and nothing is averaged: the window is 0.
+    ///
+    /// ```
+    /// # #[cfg(feature = "averaged-steps")] {
+    /// # use plotter_motion::{PathMode, PlannerSettings, planner::JerkLimit};
+    /// let path = PathMode::Tolerance { path_tolerance_mm: 0.05 };
+    /// let along = PlannerSettings { path, jerk_mm_s3: Some(20_000.0), ..PlannerSettings::default() };
+    /// assert_eq!(along.planned()?.window_s, 0.0);
+    /// let vector = PlannerSettings { jerk_limit: JerkLimit::Vector, ..along };
+    /// assert_eq!(vector.planned()?, along.averaged(20_000.0)?);
+    /// # }
+    /// # Ok::<(), plotter_motion::planner::PlanError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError`] for settings that nothing can be planned with.
+    pub fn planned(&self) -> Result<Averaged, PlanError> {
+        self.check::<AllModes>()?;
+        Ok(self.planned_of_checked())
+    }
+
+    /// The same of settings that have been checked.
+    pub(crate) fn planned_of_checked(&self) -> Averaged {
+        match (self.vector_jerk(), self.path) {
+            (Some(jerk_mm_s3), PathMode::Tolerance { path_tolerance_mm }) => {
+                self.divided(path_tolerance_mm, jerk_mm_s3)
+            }
+            _ => Averaged { settings: *self, window_s: 0.0 },
+        }
+    }
+
+    /// Whether the steps of motion with these limits, averaged, are at most `room` within the window.
+    ///
+    /// T is at most room / rate if J is at least one of what makes its two bounds as long. The rate is that
+    /// of both motors at full speed, which is more than any direction has.
+    #[cfg(feature = "averaged-steps")]
+    pub(crate) const fn check_room(
+        &self,
+        x_steps_per_mm: f64,
+        y_steps_per_mm: f64,
+        room: u32,
+    ) -> Result<(), PlanError> {
+        let (Some(jerk_mm_s3), PathMode::Tolerance { path_tolerance_mm }) = (self.vector_jerk(), self.path)
+        else {
+            return Ok(());
+        };
+        let accel = match self.accel_limit {
+            AccelLimit::Vector => self.accel_mm_s2,
+            AccelLimit::Axes { x_mm_s2: one, y_mm_s2: other }
+            | AccelLimit::Belts { sum_mm_s2: one, difference_mm_s2: other } => one + other,
+        };
+        let most_s =
+            room as f64 / (self.speed_mm_s.max(self.travel_speed_mm_s) * (x_steps_per_mm + y_steps_per_mm));
+        let of_tolerance = 48.0 * AVERAGE_SHARE * path_tolerance_mm / (most_s * most_s * most_s);
+        let least_mm_s3 = of_tolerance.min(2.0 * accel / most_s);
+        if jerk_mm_s3 >= least_mm_s3 { Ok(()) } else { Err(PlanError::Window { jerk_mm_s3, least_mm_s3 }) }
+    }
+
+    fn divided(&self, path_tolerance_mm: f64, jerk_mm_s3: f64) -> Averaged {
         // The greatest acceleration as a vector.
         let accel = match self.accel_limit {
             AccelLimit::Vector => self.accel_mm_s2,
@@ -84,25 +148,31 @@ impl PlannerSettings {
         let of_tolerance_s = libm::cbrt(48.0 * AVERAGE_SHARE * path_tolerance_mm / jerk_mm_s3);
         let window_s = of_tolerance_s.min(2.0 * accel / jerk_mm_s3);
         let planned = accel.min(0.5 * jerk_mm_s3 * window_s);
-        let share = planned / accel;
+        // What is less than any limit may be is the least: a micrometre a second more, or a nanometre.
+        let shared = |limit: f64| (limit * planned / accel).max(LIMITS.0);
         let accel_limit = match self.accel_limit {
             AccelLimit::Vector => AccelLimit::Vector,
             AccelLimit::Axes { x_mm_s2, y_mm_s2 } => {
-                AccelLimit::Axes { x_mm_s2: share * x_mm_s2, y_mm_s2: share * y_mm_s2 }
+                AccelLimit::Axes { x_mm_s2: shared(x_mm_s2), y_mm_s2: shared(y_mm_s2) }
             }
             AccelLimit::Belts { sum_mm_s2, difference_mm_s2 } => {
-                AccelLimit::Belts { sum_mm_s2: share * sum_mm_s2, difference_mm_s2: share * difference_mm_s2 }
+                AccelLimit::Belts { sum_mm_s2: shared(sum_mm_s2), difference_mm_s2: shared(difference_mm_s2) }
             }
         };
         let left_mm = path_tolerance_mm - planned * window_s * window_s / 24.0;
         let settings = Self {
-            path: PathMode::Tolerance { path_tolerance_mm: left_mm },
-            accel_mm_s2: if accel_limit == AccelLimit::Vector { planned } else { self.accel_mm_s2 },
+            path: PathMode::Tolerance { path_tolerance_mm: left_mm.max(LEAST_TOLERANCE_MM) },
+            accel_mm_s2: if accel_limit == AccelLimit::Vector {
+                planned.max(LIMITS.0)
+            } else {
+                self.accel_mm_s2
+            },
             accel_limit,
             jerk_mm_s3: None,
+            #[cfg(feature = "averaged-steps")]
+            jerk_limit: super::JerkLimit::Path,
             ..*self
         };
-        settings.check::<AllModes>()?;
-        Ok(Averaged { settings, window_s })
+        Averaged { settings, window_s }
     }
 }

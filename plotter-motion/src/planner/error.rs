@@ -42,6 +42,18 @@ pub enum PlanError {
         /// The limit.
         quantity: &'static str,
     },
+    /// The jerk as a vector is limited by averaging the steps, which this does not go with.
+    Averaging {
+        /// What it does not go with.
+        quantity: &'static str,
+    },
+    /// A jerk as a vector that takes a window with more steps than there is room for.
+    Window {
+        /// The greatest jerk, mm/s³.
+        jerk_mm_s3: f64,
+        /// The least that would do at these speeds, mm/s³.
+        least_mm_s3: f64,
+    },
     /// A setting outside its range.
     Setting {
         /// The setting.
@@ -79,6 +91,16 @@ impl fmt::Display for PlanError {
                 f,
                 "{quantity} can be limited within a tolerance only: a corner that is passed through its vertex is a jump of the \
                  velocity"
+            ),
+            Self::Averaging { quantity } => write!(
+                f,
+                "the jerk is limited as a vector by averaging the steps, which does not go with {quantity}: limit it along \
+                 the path, in a machine's file by planner.jerk_limit = \"path\""
+            ),
+            Self::Window { jerk_mm_s3, least_mm_s3 } => write!(
+                f,
+                "a jerk of {jerk_mm_s3} mm/s³ as a vector: at these speeds it must be at least {least_mm_s3:.0}, or more \
+                 steps are averaged than there is room for; allow more jerk or less speed, or limit it along the path"
             ),
             Self::Setting { quantity, value, least, most } => {
                 write!(f, "{quantity} is {value}: it must lie in {least}..={most}")

@@ -49,4 +49,6 @@ pub use phase::{Action, Course, Phase, Shape};
 pub(crate) use rise::HELIX_SHARE;
 #[cfg(feature = "third-motor")]
 pub use rise::ZLimits;
+#[cfg(feature = "averaged-steps")]
+pub use settings::JerkLimit;
 pub use settings::{AccelLimit, PathMode, PlannerSettings};

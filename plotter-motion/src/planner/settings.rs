@@ -1,6 +1,8 @@
 //! [`PlannerSettings`]: the limits of a machine's motion, and how its path is followed.
 
 use super::{Modes, PlanError};
+#[cfg(feature = "averaged-steps")]
+use crate::config::JerkChoice;
 use crate::{
     Machine, MachineConfig,
     config::{AccelChoice, KinematicsChoice, PathChoice},
@@ -49,6 +51,21 @@ pub enum AccelLimit {
     },
 }
 
+/// Quantities that the limit of the jerk may limit.
+#[cfg(feature = "averaged-steps")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+pub enum JerkLimit {
+    /// What changes the acceleration along the path. As a vector the jerk is not limited: the acceleration
+    /// across begins and ends at once with a curve.
+    #[default]
+    Path,
+    /// The jerk as a vector, at every instant, with [`PathMode::Tolerance`]: the steps of the motion are
+    /// averaged over some hundredths of a second. A [`Planner`](super::Planner) by itself does not do that:
+    /// see [`PlannerSettings::planned`].
+    Vector,
+}
+
 impl AccelLimit {
     /// The limit of a machine, by how its motors move the pen.
     fn of(machine: &Machine) -> Self {
@@ -88,10 +105,11 @@ pub struct PlannerSettings {
     /// What that is a limit of. It holds at every instant but in a corner of [`PathMode::Exact`], which is a
     /// jump of the velocity.
     pub accel_limit: AccelLimit,
-    /// Greatest jerk along the path, mm/s³; `None` lets the acceleration change at once (trapezoidal
-    /// profiles), a limit makes them S-curves. As a vector the jerk is not limited: the acceleration across
-    /// begins and ends at once with a curve. With a limit 0.9 of the acceleration is used along the path in
-    /// exact mode and 0.7 within a tolerance; what that leaves is for turning.
+    /// Greatest jerk, mm/s³; `None` lets the acceleration change at once (trapezoidal profiles). It is that
+    /// along the path, which makes S-curves of them, or with the feature `averaged-steps` what `jerk_limit`
+    /// says. As a vector the jerk of an S-curve is not limited: the acceleration across begins and ends at
+    /// once with a curve. 0.9 of the acceleration is used along the path in exact mode and 0.7 within a
+    /// tolerance; what that leaves is for turning.
     pub jerk_mm_s3: Option<f64>,
     /// How far a machine that rounds a corner by itself may miss its vertex, mm: see
     /// [`junction_speed`](super::junction_speed).
@@ -104,6 +122,17 @@ pub struct PlannerSettings {
     /// that are noise to it; what is more is a corner. Less than a nanometre, as 0, takes every vertex as it
     /// is. [`ExactOnly`](super::ExactOnly) and [`ExactPen`](super::ExactPen) do that whatever it is.
     pub allowance_mm: f64,
+    /// What `jerk_mm_s3` is a limit of.
+    #[cfg(feature = "averaged-steps")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "JerkLimit::is_path"))]
+    pub jerk_limit: JerkLimit,
+}
+
+#[cfg(all(feature = "averaged-steps", feature = "serde"))]
+impl JerkLimit {
+    fn is_path(&self) -> bool {
+        *self == Self::Path
+    }
 }
 
 impl Default for PlannerSettings {
@@ -118,8 +147,36 @@ impl Default for PlannerSettings {
             junction_deviation_mm: 0.01,
             resolution_mm: 0.005,
             allowance_mm: 0.0,
+            #[cfg(feature = "averaged-steps")]
+            jerk_limit: JerkLimit::Path,
         }
     }
+}
+
+/// [`PlannerSettings`] whose jerk, if it is limited, is so along the path or as a vector, with the field for
+/// that or without it, as it is built in: for constants that a build script writes.
+#[cfg(feature = "averaged-steps")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! jerk_limited {
+    ($limit:ident $settings:ident { $($field:ident: $value:expr),* $(,)? }) => {
+        $settings { $($field: $value,)* jerk_limit: $crate::planner::JerkLimit::$limit }
+    };
+}
+
+#[cfg(not(feature = "averaged-steps"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! jerk_limited {
+    (Path $settings:ident { $($field:ident: $value:expr),* $(,)? }) => {
+        $settings { $($field: $value),* }
+    };
+    (Vector $($settings:tt)*) => {
+        compile_error!(
+            "the machine's file limits the jerk as a vector: build with plotter-motion's feature averaged-steps, or write \
+             planner.jerk_limit = \"path\""
+        )
+    };
 }
 
 #[cfg(feature = "serde")]
@@ -134,6 +191,8 @@ crate::checked_serde::checked_deserialize!(
         junction_deviation_mm: f64,
         resolution_mm: f64,
         allowance_mm: f64,
+        #[cfg(feature = "averaged-steps")]
+        jerk_limit: JerkLimit,
     },
     PlannerSettings::check::<super::AllModes>
 );
@@ -177,7 +236,39 @@ impl PlannerSettings {
             junction_deviation_mm: planner.junction_deviation_mm,
             resolution_mm: 0.5 / finest,
             allowance_mm: 1.0 / finest,
+            #[cfg(feature = "averaged-steps")]
+            jerk_limit: match planner.jerk_limit_in_force() {
+                JerkChoice::Path => JerkLimit::Path,
+                JerkChoice::Vector => JerkLimit::Vector,
+            },
         }
+    }
+
+    /// The same with another way to follow the path. Exactly, the jerk is limited along it: a corner is a
+    /// jump of the velocity.
+    ///
+    /// ```
+    /// # use plotter_motion::{PathMode, PlannerSettings};
+    /// let path = PathMode::Tolerance { path_tolerance_mm: 0.05 };
+    /// assert_eq!(PlannerSettings::default().following(path).path, path);
+    /// ```
+    #[must_use]
+    pub fn following(self, path: PathMode) -> Self {
+        Self {
+            path,
+            #[cfg(feature = "averaged-steps")]
+            jerk_limit: if path == PathMode::Exact { JerkLimit::Path } else { self.jerk_limit },
+            ..self
+        }
+    }
+
+    /// The jerk as a vector, if that is what is limited.
+    pub(crate) const fn vector_jerk(&self) -> Option<f64> {
+        #[cfg(feature = "averaged-steps")]
+        if matches!(self.jerk_limit, JerkLimit::Vector) {
+            return self.jerk_mm_s3;
+        }
+        None
     }
 
     /// The same for a drawing whose file writes places to `digit_mm`: half of that is the allowance, where it
@@ -222,6 +313,9 @@ impl PlannerSettings {
         }
         if !M::ALL && self.jerk_mm_s3.is_some() {
             return Err(PlanError::Mode { quantity: "jerk_mm_s3" });
+        }
+        if self.vector_jerk().is_some() && matches!(self.path, PathMode::Exact) {
+            return Err(PlanError::Corners { quantity: "the jerk as a vector" });
         }
         let (least, most) = LIMITS;
         let jerk_mm_s3 = if let Some(jerk_mm_s3) = self.jerk_mm_s3 { jerk_mm_s3 } else { least };

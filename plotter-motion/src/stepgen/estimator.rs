@@ -11,6 +11,9 @@ use crate::{Planner, PlannerSettings, PlotOp, planner::PlanError};
 /// drawing, to the tick: the same plan, the same phases, the same clock, and only the steps are left out. So
 /// it takes a hundredth of the work, and as little memory for a drawing of any size.
 ///
+/// Where the jerk is limited as a vector (feature `averaged-steps`), each rest takes the window more over
+/// which the motion is averaged.
+///
 /// Where a machine has other motors or other kinematics makes no difference to its time, but by
 /// [`PlannerSettings::resolution_mm`].
 ///
@@ -35,7 +38,8 @@ impl<const N: usize> Estimator<N> {
     ///
     /// # Errors
     ///
-    /// [`PlanError::Setting`] for a limit that no motion can be planned with.
+    /// [`PlanError::Setting`] for a limit that no motion can be planned with; [`PlanError::Averaging`] for a
+    /// laser where the jerk is limited as a vector.
     pub fn new(settings: PlannerSettings, timing: StepGenSettings) -> Result<Self, PlanError> {
         Self::with_modes(settings, timing)
     }
@@ -48,7 +52,13 @@ impl<const N: usize, M: Modes> Estimator<N, M> {
     ///
     /// [`PlanError::Mode`] for a mode that is not among them, and as [`Estimator::new`].
     pub fn with_modes(settings: PlannerSettings, timing: StepGenSettings) -> Result<Self, PlanError> {
-        Ok(Self { planner: Planner::with_modes(settings)?, timer: PlotTimer::with_modes::<M>(timing) })
+        settings.check::<M>()?;
+        let averaged = settings.planned_of_checked();
+        if averaged.window_s > 0.0 && timing.laser {
+            return Err(PlanError::Averaging { quantity: "a laser" });
+        }
+        let timer = PlotTimer::with_modes::<M>(timing).averaged(&averaged);
+        Ok(Self { planner: Planner::with_modes(averaged.settings)?, timer })
     }
 
     /// Takes the next operation.

@@ -18,6 +18,7 @@
 //! When a phase or a chord begins, floats are turned into whole numbers. From step to step there are only
 //! whole numbers.
 
+mod average;
 mod averaged_steps;
 mod backlash_steps;
 mod chord;
@@ -29,8 +30,12 @@ mod step_gen;
 mod step_queue;
 mod timed_events;
 
+#[cfg(feature = "averaged-steps")]
+pub(crate) use average::Average;
 pub(crate) use chord::place_on;
 
+#[cfg(feature = "averaged-steps")]
+pub(crate) use averaged_steps::AVERAGED_STEPS;
 pub use averaged_steps::AveragedSteps;
 pub use backlash_steps::BacklashSteps;
 pub use estimator::Estimator;

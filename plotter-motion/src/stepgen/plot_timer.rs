@@ -2,7 +2,7 @@
 
 use super::StepGenSettings;
 use super::moment::Moment;
-use crate::planner::{AllModes, Modes};
+use crate::planner::{AllModes, Averaged, Modes};
 use crate::{Pen, planner::Action};
 use core::time::Duration;
 
@@ -68,6 +68,10 @@ pub struct PlotTimer {
     pen: Pen,
     motion_ticks: u64,
     pen_ticks: u64,
+    /// Over which the motion is averaged, if it is.
+    window_ticks: u64,
+    /// The motors have moved since the last rest.
+    moves: bool,
     /// All but the times.
     counts: PlotTime,
 }
@@ -83,13 +87,41 @@ impl PlotTimer {
             pen: Pen::Up,
             motion_ticks: 0,
             pen_ticks: 0,
+            window_ticks: 0,
+            moves: false,
             counts: PlotTime::default(),
         }
+    }
+
+    /// The same of motion that is averaged: each rest takes the window more, until the motors have arrived.
+    ///
+    /// ```
+    /// # use plotter_motion::{PathMode, PlannerSettings, stepgen::{PlotTimer, StepGenSettings}};
+    /// # use plotter_motion::planner::{Action, Phase};
+    /// # use std::time::Duration;
+    /// let path = PathMode::Tolerance { path_tolerance_mm: 0.05 };
+    /// let averaged = PlannerSettings { path, ..PlannerSettings::default() }.averaged(20_000.0)?; // 41.6 ms
+    /// let mut timer = PlotTimer::new(StepGenSettings::default()).averaged(&averaged);
+    /// timer.push(&Action::Phase(Phase { duration_s: 0.5, ..Phase::default() }));
+    /// assert_eq!(timer.time().total, Duration::from_micros(541_602));
+    /// # Ok::<(), plotter_motion::planner::PlanError>(())
+    /// ```
+    #[must_use]
+    pub fn averaged(self, of: &Averaged) -> Self {
+        Self { window_ticks: of.window_ticks(self.settings.clock_hz).into(), ..self }
     }
 
     /// Of a machine with these modes.
     pub(super) fn with_modes<M: Modes>(settings: StepGenSettings) -> Self {
         Self::new(settings.checked::<M>())
+    }
+
+    /// The motors arrive before anything else happens.
+    fn arrive(&mut self) {
+        if core::mem::take(&mut self.moves) {
+            self.motion_ticks += self.window_ticks;
+            self.now.tick = self.now.tick.saturating_add(self.window_ticks);
+        }
     }
 
     /// Takes the next action.
@@ -111,19 +143,23 @@ impl PlotTimer {
                 self.put(course.pen);
             }
             Action::Phase(phase) => {
+                self.moves = true;
                 let after = self.now.after_phases(phase.duration_s, count, self.settings.clock_hz);
                 self.motion_ticks += after.tick - self.now.tick;
                 self.now = after;
             }
             Action::Dwell(duration) => {
+                self.arrive();
                 self.counts.dwell = self.counts.dwell.saturating_add(*duration);
                 self.now = self.now.after(*duration, self.settings.clock_hz);
             }
             Action::SelectPen(_) => {
+                self.arrive();
                 self.counts.pens += 1;
                 self.put(Pen::Up);
             }
             Action::NewPage => {
+                self.arrive();
                 self.counts.pages += 1;
                 self.put(Pen::Up);
             }
@@ -134,6 +170,7 @@ impl PlotTimer {
         if self.pen == pen {
             return;
         }
+        self.arrive();
         match pen {
             Pen::Down => self.counts.strokes += 1,
             Pen::Up => self.counts.pen_lifts += 1,
@@ -146,9 +183,15 @@ impl PlotTimer {
         self.pen = pen;
     }
 
-    /// The time of what has been taken.
+    /// The time of what has been taken, up to where the motors have arrived.
     #[must_use]
     pub fn time(&self) -> PlotTime {
+        let mut rests = *self;
+        rests.arrive();
+        rests.told()
+    }
+
+    fn told(&self) -> PlotTime {
         let seconds = |ticks| duration(ticks, self.settings.clock_hz);
         PlotTime {
             total: seconds(self.now.tick),

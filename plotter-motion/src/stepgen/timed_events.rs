@@ -1,5 +1,6 @@
 //! [`timed_events`]: from operations to timed steps in one call.
 
+use super::average::Average;
 use super::{BacklashSteps, StepGen, StepGenSettings, TimedEvent};
 use crate::kinematics::Cartesian;
 use crate::planner::PlanError;
@@ -10,7 +11,8 @@ use core::iter;
 const BLOCKS: usize = 64;
 
 /// What the motors and the pen of a machine with stepper motors do for a tool path, and when: a [`Planner`]
-/// that is kept full, a [`StepGen`] behind it, and [`BacklashSteps`] for the play of its axes. The machine
+/// that is kept full, a [`StepGen`] behind it, what averages the steps where the jerk is limited as a vector
+/// (feature `averaged-steps`), and [`BacklashSteps`] for the play of its axes. The machine
 /// stands at the origin with its pen up, as homing leaves it, and lifts the pen at the end. Operations are
 /// taken as they are needed, so that a tool path of any length takes the same memory.
 ///
@@ -39,8 +41,10 @@ pub fn timed_events<I: IntoIterator<Item = PlotOp>>(
     machine: &Machine,
     ops: I,
 ) -> Result<impl Iterator<Item = Result<TimedEvent, PlanError>> + use<I>, PlanError> {
-    let mut planner = Planner::<BLOCKS>::new(PlannerSettings::of(machine))?;
+    let averaged = PlannerSettings::of(machine).planned()?;
+    let mut planner = Planner::<BLOCKS>::new(averaged.settings)?;
     let timing = StepGenSettings::of(machine);
+    let mut average = Average::of(&averaged, timing.clock_hz);
     let mut steps = StepGen::<Cartesian>::new(Cartesian::of(machine), timing);
     let mut play = BacklashSteps::of(machine, f64::from(timing.clock_hz));
     let mut ops = Some(ops.into_iter());
@@ -50,7 +54,7 @@ pub fn timed_events<I: IntoIterator<Item = PlotOp>>(
                 return Some(Ok(event));
             }
             // Never busy, nor is the generator below: all events before have been taken.
-            if let Some(event) = steps.next_event() {
+            if let Some(event) = average.next_event(|| steps.next_event()) {
                 play.push(event).ok()?;
                 continue;
             }
@@ -67,7 +71,14 @@ pub fn timed_events<I: IntoIterator<Item = PlotOp>>(
                     }
                 }
             }
-            let Some(action) = planner.next_action() else { return play.rest().map(Ok) };
+            let Some(action) = planner.next_action() else {
+                match average.rest() {
+                    Some(event) => play.push(event).ok()?,
+                    None => return play.rest().map(Ok),
+                }
+                continue;
+            };
+            average.note(&action);
             steps.push(action).ok()?;
         }
     }))

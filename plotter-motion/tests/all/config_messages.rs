@@ -143,3 +143,37 @@ fn deep_nesting_is_refused_and_not_followed() {
         assert!(matches!(Machine::from_toml(&text), Err(TomlError::Syntax { .. })));
     }
 }
+
+#[test]
+fn a_jerk_that_cannot_be_limited_as_a_vector_says_why() {
+    let refused = |rest: &str| {
+        message(&format!("drive = \"stepper\"\narea = {{ width_mm = 380, height_mm = 310 }}\n{rest}"))
+    };
+    assert_snapshot!(refused("planner.jerk_limit = \"axes\""), @r#"line 4, column 22: planner.jerk_limit: the text "axes"; write "vector" or "path""#);
+    assert_snapshot!(refused("[planner]\njerk_limit = \"vector\""), @r#"line 5, column 14: planner.jerk_limit: "vector" goes with planner.mode = "tolerance" only: a corner that is passed through its vertex is a jump of the velocity; write "path", or leave it out"#);
+    let averaged = "[planner]\nmode = \"tolerance\"\ns_curve = true\n";
+    assert_eq!(refused(averaged), "accepted");
+    assert_snapshot!(refused(&format!("{averaged}[laser]\nenabled = true")), @r#"planner.jerk_limit: "vector" does not go with laser.enabled: the steps are averaged, and the laser's power would not follow; write "path" (not in the file: the default holds)"#);
+    assert_snapshot!(refused(&format!("{averaged}jerk_limit = \"vector\"\n[z]\nenabled = true")), @r#"line 7, column 14: planner.jerk_limit: "vector" does not go with z.enabled: the steps are averaged, and the third axis would not follow; write "path""#);
+    assert_snapshot!(refused(&format!("{averaged}jerk_mm_s3 = 30")), @r#"line 7, column 14: planner.jerk_mm_s3: 30 mm/s^3 must be at least 83 mm/s^3; or more steps are averaged than there is room for: allow more jerk, lower planner.speed_mm_s and planner.travel_speed_mm_s, or write planner.jerk_limit = "path""#);
+    for remedy in ["jerk_limit = \"path\"", "jerk_limit = \"path\"\n[laser]\nenabled = true"] {
+        assert_eq!(refused(&format!("{averaged}{remedy}")), "accepted");
+    }
+    assert_eq!(refused(&format!("{averaged}jerk_mm_s3 = 30\njerk_limit = \"path\"")), "accepted");
+}
+
+#[test]
+fn within_a_tolerance_the_jerk_is_limited_as_a_vector_unless_the_file_says_otherwise() {
+    use plotter_motion::planner::JerkLimit::{Path, Vector};
+    let limit = |rest: &str| {
+        let text = format!(
+            "schema = 1\ndrive = \"stepper\"\narea = {{ width_mm = 380, height_mm = 310 }}\nplanner.s_curve = true\n{rest}"
+        );
+        plotter_motion::PlannerSettings::of(&Machine::from_toml(&text).unwrap()).jerk_limit
+    };
+    assert_eq!(limit(""), Path);
+    assert_eq!(limit("planner.mode = \"exact\"\nplanner.jerk_limit = \"path\""), Path);
+    assert_eq!(limit("planner.mode = \"tolerance\""), Vector);
+    assert_eq!(limit("planner.mode = \"tolerance\"\nplanner.jerk_limit = \"vector\""), Vector);
+    assert_eq!(limit("planner.mode = \"tolerance\"\nplanner.jerk_limit = \"path\""), Path);
+}

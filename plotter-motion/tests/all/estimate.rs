@@ -219,3 +219,54 @@ fn it_is_ten_times_as_fast_as_the_steps() {
     println!("{by_steps:?} with steps, {by_plan:?} without: {ratio:.0} times");
     assert!(ratio >= 10.0, "{by_steps:?} with steps, {by_plan:?} without");
 }
+
+/// Averaged by hand, each pause waiting for the motors.
+#[cfg(feature = "averaged-steps")]
+fn averaged_end(settings: PlannerSettings, timing: StepGenSettings, ops: &[PlotOp]) -> u64 {
+    use plotter_motion::stepgen::{AveragedSteps, TimedEvent};
+    use std::cell::RefCell;
+    let of = settings.planned().unwrap();
+    let averaged = RefCell::new(AveragedSteps::<2048>::of(&of, timing.clock_hz).unwrap());
+    let is_pause = std::cell::Cell::new(false);
+    let arrive = || {
+        if is_pause.replace(false) {
+            averaged.borrow_mut().arrive();
+        }
+    };
+    let end = auditor::run::<16>(
+        of.settings,
+        timing,
+        STEPS_PER_MM,
+        ops,
+        |action, _, _| {
+            arrive();
+            is_pause.set(matches!(action, Action::Dwell(_)));
+        },
+        |tick, event| {
+            let averaged: &mut AveragedSteps<2048> = &mut averaged.borrow_mut();
+            averaged.push(TimedEvent { tick, event }).unwrap();
+            while averaged.next_event().is_some() {}
+        },
+    );
+    arrive();
+    let mut averaged = averaged.into_inner();
+    while averaged.rest().is_some() {}
+    end + averaged.delay_ticks()
+}
+
+#[cfg(feature = "averaged-steps")]
+proptest! {
+    #![proptest_config(cases(48))]
+
+    #[test]
+    fn any_averaged_drawing_takes_what_its_steps_take(ops in ops(), settle_us in 0_u64..300_000) {
+        let timing =
+            StepGenSettings { pen_settle: Duration::from_micros(settle_us), ..StepGenSettings::default() };
+        let settings = PlannerSettings {
+            jerk_limit: plotter_motion::planner::JerkLimit::Vector,
+            ..modes()[3].1
+        };
+        let (end, found) = (averaged_end(settings, timing, &ops), estimated::<16>(settings, timing, &ops));
+        prop_assert_eq!(found.total.as_micros(), u128::from(end));
+    }
+}

@@ -47,7 +47,7 @@ impl Halves {
     fn new<const N: usize>(settings: StepperPlotterSettings, is_there: fn(u64) -> bool) -> Self {
         let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
         let memory = Box::leak(Box::new(StepsAhead::<N>::new()));
-        let (planning, stepping) = StepperPlotter::new(settings, gate).unwrap().split(memory);
+        let (planning, stepping) = StepperPlotter::new(settings, gate).unwrap().split(memory).unwrap();
         Self { planning, stepping, now_us: 0, is_there, made: vec![], pen: vec![], answers: String::new() }
     }
 
@@ -665,7 +665,8 @@ fn two_threads_make_every_step_once_and_in_order() {
     let (alone, _) = in_one(settings, text);
     let mut memory = StepsAhead::<1024>::new();
     let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
-    let (mut planning, mut stepping) = StepperPlotter::new(settings, gate).unwrap().split(&mut memory);
+    let (mut planning, mut stepping) =
+        StepperPlotter::new(settings, gate).unwrap().split(&mut memory).unwrap();
     let ends = core::sync::atomic::AtomicBool::new(false);
     let made = std::thread::scope(|scope| {
         let stepper = scope.spawn(|| {

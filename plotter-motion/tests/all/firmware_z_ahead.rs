@@ -44,7 +44,7 @@ impl Halves {
         let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
         let memory = Box::leak(Box::new(StepsAhead::<4096>::new()));
         let plotter = StepperPlotter::with_modes(settings, gate).unwrap();
-        let (planning, stepping) = plotter.split(memory);
+        let (planning, stepping) = plotter.split(memory).unwrap();
         let mut halves = Self {
             planning,
             stepping,

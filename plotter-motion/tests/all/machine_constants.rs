@@ -2,7 +2,9 @@
 //!
 //! The texts lie in `tests/data/machine_constants`; `UPDATE_GOLDEN=1` writes them anew.
 
-use plotter_motion::config::{AccelChoice, ControllerChoice, PathChoice, PenLift, SecondMotorChoice};
+use plotter_motion::config::{
+    AccelChoice, ControllerChoice, JerkChoice, PathChoice, PenLift, SecondMotorChoice,
+};
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
 use plotter_motion::{LimitSwitches, Machine, MachineConfig, SafetyGate, build, control, firmware};
 
@@ -21,6 +23,10 @@ mod plain {
 #[allow(dead_code, unreachable_pub, reason = "a firmware uses it all")]
 mod smooth {
     include!("../data/machine_constants/smooth.rs");
+}
+#[allow(dead_code, unreachable_pub, reason = "a firmware uses it all")]
+mod averaged {
+    include!("../data/machine_constants/averaged.rs");
 }
 #[allow(dead_code, unreachable_pub, reason = "a firmware uses it all")]
 mod height {
@@ -47,10 +53,19 @@ fn every_mode() -> Machine {
     machine(MachineConfig::stepper_plotter(), |config| {
         config.planner.mode = PathChoice::Tolerance;
         config.planner.s_curve = true;
+        config.planner.jerk_limit = Some(JerkChoice::Path);
         config.planner.accel_limit = AccelChoice::Axes;
         config.x.stepper.backlash_mm = 0.1;
         config.y.stepper.inverted = true;
         config.laser.enabled = true;
+    })
+}
+
+/// With the jerk limited as a vector.
+fn averaged() -> Machine {
+    machine(MachineConfig::stepper_plotter(), |config| {
+        config.planner.mode = PathChoice::Tolerance;
+        config.planner.s_curve = true;
     })
 }
 
@@ -118,6 +133,7 @@ fn a_stepper_plotter_is_what_its_file_says_in_every_mode() {
     let documented = Machine::new(MachineConfig::stepper_plotter()).unwrap();
     is_settings_of("plain", &documented, Dialect::Grbl, &plain::stepper_plotter::SETTINGS);
     is_settings_of("smooth", &every_mode(), Dialect::Grbl, &smooth::stepper_plotter::SETTINGS);
+    is_settings_of("averaged", &averaged(), Dialect::Grbl, &averaged::stepper_plotter::SETTINGS);
     is_settings_of("height", &lifted_by_height(), Dialect::Grbl, &height::stepper_plotter::SETTINGS);
     is_settings_of("mdraw", &documented, Dialect::MDraw, &mdraw::stepper_plotter::SETTINGS);
     is_settings_of("three", &three_axes(), Dialect::Grbl, &three::stepper_plotter::SETTINGS);
@@ -131,6 +147,10 @@ fn a_stepper_plotter_is_what_its_file_says_in_every_mode() {
     );
     assert!(
         smooth::stepper_plotter::StepperPlotter::from_checked(&smooth::stepper_plotter::CHECKED, gate())
+            .is_ok()
+    );
+    assert!(
+        averaged::stepper_plotter::StepperPlotter::from_checked(&averaged::stepper_plotter::CHECKED, gate())
             .is_ok()
     );
     assert!(

@@ -23,6 +23,8 @@ mod felt;
 mod figure;
 #[cfg(feature = "step-ahead")]
 mod firmware_ahead;
+#[cfg(feature = "averaged-steps")]
+mod firmware_averaged;
 mod firmware_by_hand;
 mod firmware_grbl;
 mod firmware_grbl_table;

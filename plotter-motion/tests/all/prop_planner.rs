@@ -102,6 +102,8 @@ fn settings() -> impl Strategy<Value = PlannerSettings> {
                 junction_deviation_mm,
                 resolution_mm,
                 allowance_mm,
+                #[cfg(feature = "averaged-steps")]
+                jerk_limit: plotter_motion::planner::JerkLimit::Path,
             }
         },
     )
@@ -424,6 +426,8 @@ fn a_way_nearly_straight_back_is_a_stop_within_a_tolerance() {
         junction_deviation_mm: 0.039_348_899,
         resolution_mm: 0.0,
         allowance_mm: 0.0,
+        #[cfg(feature = "averaged-steps")]
+        jerk_limit: plotter_motion::planner::JerkLimit::Path,
     };
     check(settings, &ops, &[]).unwrap();
 }

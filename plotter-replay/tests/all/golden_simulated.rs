@@ -5,6 +5,7 @@
 //! UPDATE_GOLDEN=1 cargo test -p plotter-replay --features cli,live --test all golden_simulated::
 //! ```
 
+use plotter_motion::config::{JerkChoice, PathChoice};
 use plotter_motion::{Machine, MachineConfig, StepPoint, protocol::digits};
 use plotter_replay::live::{Line, MachineLog, SimulatedMachine, Spoken};
 use plotter_replay::log::{self, Header};
@@ -136,4 +137,25 @@ fn every_dialect_does_again_what_its_golden_log_has() {
         let outcome = Player::new(settings).check(records, controller);
         assert!(outcome.is_equal(), "{name}: {outcome}");
     }
+}
+
+/// Within a tolerance it is limited as a vector if the file does not say otherwise.
+#[test]
+fn a_machine_that_limits_the_jerk_as_a_vector_does_again_what_its_log_has() {
+    let (_, steppers, spoken, header, script, talk) = sessions().swap_remove(1);
+    let mut config = *steppers.config();
+    (config.planner.mode, config.planner.s_curve) = (PathChoice::Tolerance, true);
+    let averaged = Machine::new(config).unwrap();
+    config.planner.jerk_limit = Some(JerkChoice::Path);
+    let along = Machine::new(config).unwrap();
+    let made = [&averaged, &along].map(|machine| record(machine, spoken, &header, script, &talk));
+    assert_eq!(record(&averaged, spoken, &header, script, &talk), made[0], "not twice alike");
+    assert!(made[0] != made[1]);
+    let records: Vec<_> = log::Reader::new(&made[0][..]).unwrap().map(Result::unwrap).collect();
+    let settings = PlayerSettings::for_recording(&header, &records);
+    let is_equal = |machine| {
+        let controller = AnyController::for_header(&header, Some(machine)).unwrap();
+        Player::new(settings).check(records.clone(), controller).is_equal()
+    };
+    assert!(is_equal(&averaged) && !is_equal(&along));
 }

@@ -134,7 +134,7 @@ fn main() -> ! {
     let gate = SafetyGate::new(limits.limits(), was_bitten || !free);
     let Some(memory) = singleton!(MEMORY: StepsAhead<WORDS> = StepsAhead::new()) else { board::halt() };
     let Ok(plotter) = StepperPlotter::from_checked(&CHECKED_PLOTTER, gate) else { board::halt() };
-    let (mut planning, stepping) = plotter.split(memory);
+    let Ok((mut planning, stepping)) = plotter.split(memory) else { board::halt() };
     is_small(&planning);
     let steps = Steps { stepping, motors, servo, laser, pen_deg: None, now_us: 0, failed: false };
     critical_section::with(|cs| STEPS.borrow_ref_mut(cs).replace(steps));

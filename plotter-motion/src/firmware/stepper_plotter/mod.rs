@@ -170,6 +170,15 @@
 //! Where an axis turns round, extra steps take up its play ([`StepperPlotterSettings::backlash`]) while the
 //! path goes on. What is told as a place is that of the carriage, also after a stop within the play.
 //!
+//! # The jerk as a vector
+//!
+//! With the feature `averaged-steps` the jerk of the whole motion is limited where the settings say so
+//! ([`JerkLimit::Vector`](crate::planner::JerkLimit)): the steps are averaged over some hundredths of a
+//! second, behind the plan and before the play. So the motors come to rest by that time later: the pen is
+//! moved, a pause begins and a line is told as done once they have arrived, also after a hold and a cancelled
+//! jog. A stop lets none of the steps on their way be made. Homing is not averaged. A `$n=` that would take
+//! more steps on their way than the 4096 that have room is `error:12`.
+//!
 //! # A third motor
 //!
 //! With the feature `third-motor` and [`ThreeAxes`](crate::planner::ThreeAxes) a machine has a third axis

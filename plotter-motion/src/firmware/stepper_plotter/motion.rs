@@ -17,10 +17,14 @@ use super::{
     Signal, Status, StepperPlotterSettings, Stop, StoredSettings,
 };
 use crate::extremes::greatest;
+#[cfg(feature = "averaged-steps")]
+use crate::geom::single;
 use crate::homing::Homed;
 use crate::kinematics::{Cartesian, Kinematics};
 use crate::planner::{AllModes, Keep as _, Modes};
 use crate::seconds::has_come;
+#[cfg(feature = "averaged-steps")]
+use crate::stepgen::Average;
 use crate::{
     Axis, Direction, LimitSwitches, Pen, Planner, PlotOp, Point, SafetyGate, StepGen, StepPoint,
     planner::Phase,
@@ -69,6 +73,8 @@ pub struct Motion<M: Modes = AllModes> {
     settings: StepperPlotterSettings,
     planner: Planner<BLOCKS, M>,
     steps: StepGen<Cartesian, M>,
+    #[cfg(feature = "averaged-steps")]
+    average: M::Kept<Average>,
     play: M::Kept<Play>,
     /// What it was switched on with.
     built: M::Kept<StepperPlotterSettings>,
@@ -136,9 +142,21 @@ impl<M: Modes> Motion<M> {
     #[must_use]
     pub fn from_checked(checked: &CheckedSettings<M>, gate: SafetyGate) -> Self {
         let settings = checked.settings();
-        let mut planner = Planner::of_checked(&checked.limits);
+        #[cfg(feature = "averaged-steps")]
+        let averaged = checked.limits.planned_of_checked();
+        #[cfg(feature = "averaged-steps")]
+        let limits = &averaged.settings;
+        #[cfg(not(feature = "averaged-steps"))]
+        let limits = &checked.limits;
+        let mut planner = Planner::of_checked(limits);
         darken(&mut planner);
         let steps = step_gen(settings);
+        #[cfg(feature = "averaged-steps")]
+        let mut average = M::Kept::<Average>::default();
+        #[cfg(feature = "averaged-steps")]
+        if let Some(average) = average.get_mut() {
+            *average = Average::of(&averaged, CLOCK_HZ);
+        }
         let mut play = M::Kept::<Play>::default();
         if let Some(play) = play.get_mut() {
             *play = Play::new(settings);
@@ -155,6 +173,8 @@ impl<M: Modes> Motion<M> {
             settings: *settings,
             planner,
             steps,
+            #[cfg(feature = "averaged-steps")]
+            average,
             play,
             built,
             measured: M::Kept::default(),
@@ -321,8 +341,12 @@ impl<M: Modes> Motion<M> {
     /// Begins anew with what the host has stored: stops, if it moves, and stands where it is.
     pub fn restart(&mut self, stored: StoredSettings, link: &mut Link) {
         let settings = StepperPlotterSettings { stored, ..self.settings };
+        let limits = settings.limits();
+        // The window over which motion is averaged does not depend on what is stored.
+        #[cfg(feature = "averaged-steps")]
+        let limits = limits.planned_of_checked().settings;
         // The limits were good, and only become less: a planner that cannot be had leaves the old one.
-        if let Ok(planner) = Planner::with_modes(settings.limits()) {
+        if let Ok(planner) = Planner::with_modes(limits) {
             self.settings = settings;
             self.planner = planner;
             #[cfg(feature = "third-motor")]
@@ -419,6 +443,8 @@ impl<M: Modes> Motion<M> {
         });
         #[cfg(feature = "third-motor")]
         let speed_mm_s = self.true_speed(speed_mm_s);
+        #[cfg(feature = "averaged-steps")]
+        let speed_mm_s = self.averaged_speed().unwrap_or(speed_mm_s);
         let planned = self.planner.blocks() + usize::from(has_work);
         Status {
             activity,
@@ -467,7 +493,25 @@ impl<M: Modes> Motion<M> {
         if self.ahead.made.is_some_and(|made| !made.stands) {
             return true;
         }
-        self.next.is_some() || !self.at_rest || !has_come(self.time_of(self.steps.tick()), now)
+        self.next.is_some() || !self.at_rest || !has_come(self.time_of(self.tick()), now)
+    }
+
+    /// When all that has been taken from the planner is over.
+    fn tick(&self) -> u64 {
+        #[cfg(feature = "averaged-steps")]
+        if let Some(average) = self.average.get() {
+            return self.steps.tick().saturating_add(average.delay_ticks());
+        }
+        self.steps.tick()
+    }
+
+    /// The speed by the steps of the window, if these are averaged, mm/s.
+    #[cfg(feature = "averaged-steps")]
+    fn averaged_speed(&self) -> Option<f32> {
+        let [x_hz, y_hz] = self.average.get()?.rates_hz(CLOCK_HZ)?;
+        let (x, y) = (single(self.settings.x_steps_per_mm), single(self.settings.y_steps_per_mm));
+        let (x_mm_s, y_mm_s) = (x_hz / x, y_hz / y);
+        Some(crate::root::root(x_mm_s * x_mm_s + y_mm_s * y_mm_s))
     }
 
     fn time_of(&self, tick: u64) -> Duration {
@@ -476,7 +520,7 @@ impl<M: Modes> Motion<M> {
 
     /// A machine that has stood begins now.
     fn begin(&mut self, now: Duration) {
-        let late = now.saturating_sub(self.time_of(self.steps.tick()));
+        let late = now.saturating_sub(self.time_of(self.tick()));
         self.base = self.base.saturating_add(late);
     }
 
@@ -491,6 +535,10 @@ impl<M: Modes> Motion<M> {
         self.planner.clear(at);
         darken(&mut self.planner);
         self.steps.clear(self.carriage());
+        #[cfg(feature = "averaged-steps")]
+        if let Some(average) = self.average.get_mut() {
+            average.clear(self.steps.tick());
+        }
         #[cfg(feature = "third-motor")]
         self.tell_z();
         if let Some(play) = self.play.get_mut() {

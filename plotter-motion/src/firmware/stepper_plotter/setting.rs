@@ -49,7 +49,8 @@ pub enum SettingProblem {
     Negative,
     /// It lies outside its range.
     OutOfRange,
-    /// A motor would have to make more than 100,000 steps/s.
+    /// A motor would have to make more than 100,000 steps/s, or more steps would be averaged than there is
+    /// room for.
     StepRate,
 }
 
@@ -105,6 +106,10 @@ impl Setting {
         let steps_per_mm = greatest(single(x_steps_per_mm), single(y_steps_per_mm));
         let homing_hz = home_x.fast_hz.max(home_y.fast_hz).max(home_x.slow_hz).max(home_y.slow_hz);
         if speed_mm_s * steps_per_mm > MOST_HZ || homing_hz > 100_000 {
+            return Err(SettingProblem::StepRate);
+        }
+        #[cfg(feature = "averaged-steps")]
+        if settings.check_average().is_err() {
             return Err(SettingProblem::StepRate);
         }
         #[cfg(feature = "third-motor")]

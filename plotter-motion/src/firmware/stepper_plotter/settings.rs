@@ -259,7 +259,28 @@ impl StepperPlotterSettings {
         if let Err(error) = limits.check::<M>() {
             return Err(SettingsError::Planner(error));
         }
+        #[cfg(feature = "averaged-steps")]
+        if let Err(error) = self.check_average() {
+            return Err(SettingsError::Planner(error));
+        }
         Ok(CheckedSettings { settings: self, limits, modes: PhantomData })
+    }
+
+    /// Whether the steps can be averaged, if they are to be.
+    #[cfg(feature = "averaged-steps")]
+    pub(super) const fn check_average(&self) -> Result<(), PlanError> {
+        let limits = self.limits();
+        if limits.vector_jerk().is_none() {
+            return Ok(());
+        }
+        if self.laser {
+            return Err(PlanError::Averaging { quantity: "a laser" });
+        }
+        #[cfg(feature = "third-motor")]
+        if self.z.is_some() {
+            return Err(PlanError::Averaging { quantity: "a third axis" });
+        }
+        limits.check_room(self.x_steps_per_mm, self.y_steps_per_mm, crate::stepgen::AVERAGED_STEPS)
     }
 
     /// What a checked machine with stepper motors says of itself. Sides and angles are rounded to whole ones.

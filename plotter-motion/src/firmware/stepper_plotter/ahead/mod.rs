@@ -42,7 +42,7 @@
 //! let settings = StepperPlotterSettings { dialect: Dialect::Grbl, ..StepperPlotterSettings::default() };
 //! let plotter = StepperPlotter::new(settings, SafetyGate::new(LimitSwitches::RELEASED, false))?;
 //! let mut memory = StepsAhead::<4096>::new(); // in a firmware a static cell
-//! let (mut planning, mut stepping) = plotter.split(&mut memory);
+//! let (mut planning, mut stepping) = plotter.split(&mut memory)?;
 //! for byte in b"G1 X10 F2400\n" {
 //!     planning.receive(Duration::ZERO, *byte);
 //! }

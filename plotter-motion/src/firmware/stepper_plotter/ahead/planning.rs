@@ -5,7 +5,7 @@ mod third;
 mod told;
 
 use super::super::motion::{Made, whole_us};
-use super::super::{Drivers, Host, Receive, Signal, StepperPlotter, Stop};
+use super::super::{Drivers, Host, Receive, SettingsError, Signal, StepperPlotter, Stop};
 use super::Stepping;
 use super::energy::{Curve, Energy};
 use super::makes::Makes;
@@ -14,7 +14,7 @@ use super::shared::Third;
 use super::shared::{Found, In, Orders, StepsAhead, either};
 use super::words::{MOST_AFTER_US, MOST_WAIT_US, MOST_WORDS, Stretch, Word};
 use crate::extremes::{greatest, least};
-use crate::planner::{AllModes, Modes, Phase};
+use crate::planner::{AllModes, Modes, Phase, PlanError};
 use crate::safety::Blocked;
 use crate::{Axis, Direction, PlannerSettings, StepPair};
 use core::sync::atomic::Ordering;
@@ -106,9 +106,20 @@ pub struct Planning<'a, H: Host = Receive, M: Modes = AllModes> {
 impl<H: Host, M: Modes> StepperPlotter<H, M> {
     /// Takes a machine that stands, one that was just made, apart: into one half that plans in the main loop
     /// and one that steps in a timer's interrupt, with `memory` between them.
-    pub fn split<const N: usize>(mut self, memory: &mut StepsAhead<N>) -> (Planning<'_, H, M>, Stepping<'_>) {
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError::Averaging`] for a jerk that is limited as a vector: how hard a machine may brake whose
+    /// steps run out is known of planned motion only, not of its average.
+    pub fn split<const N: usize>(
+        mut self,
+        memory: &mut StepsAhead<N>,
+    ) -> Result<(Planning<'_, H, M>, Stepping<'_>), SettingsError> {
         let motion = &mut self.motion;
         let settings = *motion.settings();
+        if settings.planner.vector_jerk().is_some() {
+            return Err(SettingsError::Planner(PlanError::Averaging { quantity: "two halves" }));
+        }
         let at = motion.stands_at();
         let (limits, is_latched) = (motion.gate().limits(), motion.gate().is_latched());
         let is_pressed = motion.gate().is_button_pressed();
@@ -151,7 +162,7 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
         planning.order();
         #[cfg(feature = "third-motor")]
         planning.steps.shared.third.store(planning.third.bits().into(), Ordering::Release);
-        (planning, stepping)
+        Ok((planning, stepping))
     }
 }
 

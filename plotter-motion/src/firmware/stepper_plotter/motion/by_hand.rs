@@ -1,8 +1,12 @@
 //! What a person does on the way: jogs that are cancelled, other shares of the speeds, other settings.
 
 use super::super::{Dialect, Link, Percents, Report, Setting, StepperPlotterSettings};
+#[cfg(feature = "averaged-steps")]
+use super::CLOCK_HZ;
 use super::{Motion, State, darken, step_gen};
 use crate::planner::{Keep as _, Modes};
+#[cfg(feature = "averaged-steps")]
+use crate::stepgen::Average;
 use crate::{Pen, Planner};
 
 impl<M: Modes> Motion<M> {
@@ -62,8 +66,17 @@ impl<M: Modes> Motion<M> {
         self.settings = settings;
         self.put_pen(Pen::Up);
         debug_assert!(settings.dialect == Dialect::Grbl, "in which the limits are those of the planner");
-        self.planner = Planner::of_checked(&settings.planner);
-        self.base = self.time_of(self.steps.tick());
+        let limits = &settings.planner;
+        #[cfg(feature = "averaged-steps")]
+        let averaged = limits.planned_of_checked();
+        #[cfg(feature = "averaged-steps")]
+        let limits = &averaged.settings;
+        self.planner = Planner::of_checked(limits);
+        self.base = self.time_of(self.tick());
+        #[cfg(feature = "averaged-steps")]
+        if let Some(average) = self.average.get_mut() {
+            *average = Average::of(&averaged, CLOCK_HZ);
+        }
         self.steps = step_gen(&settings);
         self.steps.clear(self.carriage());
         if let Some(play) = self.play.get_mut() {

@@ -7,6 +7,8 @@ use super::super::{Command, Dialect, Drivers, Link, Report, Step, Stop, StoredSe
 use super::{Motion, State};
 use crate::planner::{Keep as _, Modes};
 use crate::seconds::has_come;
+#[cfg(feature = "averaged-steps")]
+use crate::stepgen::Average;
 use crate::{
     Pen, PlotOp, StepPair, StepPoint,
     planner::Action,
@@ -108,8 +110,12 @@ impl<M: Modes> Motion<M> {
             self.ahead.note(&action);
             #[cfg(feature = "third-motor")]
             self.note_rise(&action);
+            #[cfg(feature = "averaged-steps")]
+            if let Some(average) = self.average.get_mut() {
+                average.note(&action);
+            }
             if let Action::Phase(phase) = action {
-                self.phase = Some((self.time_of(self.steps.tick()), phase));
+                self.phase = Some((self.time_of(self.tick()), phase));
             }
             let pushed = self.steps.push(action);
             debug_assert!(pushed.is_ok(), "all events have been taken");
@@ -117,7 +123,7 @@ impl<M: Modes> Motion<M> {
         }
         if !self.unfinished || self.held || self.cancelling {
             // The carriage too comes to where it should be.
-            if let Some(event) = self.play.get_mut().and_then(Play::rest) {
+            if let Some(event) = self.last_event() {
                 self.next = Some(event);
                 return true;
             }
@@ -141,7 +147,7 @@ impl<M: Modes> Motion<M> {
         }
         (self.at_rest, self.start_at) = (true, None);
         // The last phase may last beyond its last step, and a pause has no step.
-        let end = self.time_of(self.steps.tick());
+        let end = self.time_of(self.tick());
         if !has_come(end, now) {
             self.due = Some(end);
             return false;
@@ -165,12 +171,18 @@ impl<M: Modes> Motion<M> {
         true
     }
 
-    /// The next event of what has been planned, and of the play on its way.
+    /// The next event of what has been planned, averaged if it is to be, and of the play on its way.
     pub(super) fn next_event(&mut self) -> Option<TimedEvent> {
         loop {
             if let Some(event) = self.play.get_mut().and_then(Play::next_event) {
                 return Some(event);
             }
+            #[cfg(feature = "averaged-steps")]
+            let event = match self.average.get_mut() {
+                Some(average) => average.next_event(|| self.steps.next_event())?,
+                None => self.steps.next_event()?,
+            };
+            #[cfg(not(feature = "averaged-steps"))]
             let event = self.steps.next_event()?;
             match self.play.get_mut() {
                 Some(play) => {
@@ -181,6 +193,18 @@ impl<M: Modes> Motion<M> {
                 None => return Some(event),
             }
         }
+    }
+
+    /// The next event of motors on their way to where all that was planned has ended.
+    fn last_event(&mut self) -> Option<TimedEvent> {
+        #[cfg(feature = "averaged-steps")]
+        if let Some(step) = self.average.get_mut().and_then(Average::rest) {
+            return match self.play.get_mut() {
+                Some(play) => play.push(step).or_else(|| play.next_event()),
+                None => Some(step),
+            };
+        }
+        self.play.get_mut().and_then(Play::rest)
     }
 
     /// Plans what the queue has and the planner takes.

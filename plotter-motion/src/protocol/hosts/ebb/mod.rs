@@ -213,8 +213,12 @@ impl<K: Kinematics + Clone, I: Iterator<Item = PlotOp>> EbbHost<K, I> {
     ///
     /// # Errors
     ///
-    /// [`PlanError::Setting`] for a limit that no motion can be planned with.
+    /// [`PlanError::Setting`] for a limit that no motion can be planned with; [`PlanError::Averaging`] for a
+    /// jerk that is limited as a vector, because the board makes the steps.
     pub fn new(kinematics: K, settings: EbbHostSettings, ops: I) -> Result<Self, PlanError> {
+        if settings.planner.vector_jerk().is_some() {
+            return Err(PlanError::Averaging { quantity: "the moves of an EBB" });
+        }
         Ok(Self {
             planner: Planner::new(settings.planner)?,
             motion: EbbMotion::new(kinematics, settings.motion),
