@@ -90,7 +90,7 @@ pub(super) fn corner_speed2(before: [f32; 2], after: [f32; 2], shorter_mm: f32, 
     // The part of the acceleration that it takes points from one direction to the other.
     let change =
         if limits.each_motor().is_some() { [u - x, v - y].map(|way| way / (2.0 * cos_half)) } else { after };
-    let of_deviation = limits.junction_deviation_mm * (1.0 + sin_half) / cos_half;
+    let of_deviation = limits.junction_deviation_mm() * (1.0 + sin_half) / cos_half;
     limits.along(change) * sin_half / cos_half * least(of_deviation, 0.5 * shorter_mm)
 }
 

@@ -27,8 +27,10 @@ pub(super) struct Limits {
     /// Squares of the speeds with the pen down and up.
     pub(super) speed2: f32,
     pub(super) travel2: f32,
-    pub(super) junction_deviation_mm: f32,
-    pub(super) resolution_mm: f32,
+    /// Two of the settings, narrowed once. With `averaged-steps`, which makes the settings longer, they are
+    /// narrowed at each corner in their stead, and a planner keeps its size.
+    #[cfg(not(feature = "averaged-steps"))]
+    narrowed_mm: [f32; 2],
 }
 
 impl Limits {
@@ -49,9 +51,27 @@ impl Limits {
             motors,
             speed2: narrow(speed_mm_s * speed_mm_s),
             travel2: narrow(travel_speed_mm_s * travel_speed_mm_s),
-            junction_deviation_mm: narrow(settings.junction_deviation_mm),
-            resolution_mm: narrow(settings.resolution_mm),
+            #[cfg(not(feature = "averaged-steps"))]
+            narrowed_mm: [settings.junction_deviation_mm, settings.resolution_mm].map(narrow),
         }
+    }
+
+    /// How far a corner may be missed by a machine that rounds it by itself, mm.
+    pub(super) fn junction_deviation_mm(&self) -> f32 {
+        #[cfg(not(feature = "averaged-steps"))]
+        let [deviation_mm, _] = self.narrowed_mm;
+        #[cfg(feature = "averaged-steps")]
+        let deviation_mm = narrow(self.settings.junction_deviation_mm);
+        deviation_mm
+    }
+
+    /// What is shorter is no way of its own, mm.
+    pub(super) fn resolution_mm(&self) -> f32 {
+        #[cfg(not(feature = "averaged-steps"))]
+        let [_, resolution_mm] = self.narrowed_mm;
+        #[cfg(feature = "averaged-steps")]
+        let resolution_mm = narrow(self.settings.resolution_mm);
+        resolution_mm
     }
 
     /// Greatest acceleration that every direction allows, mm/s².

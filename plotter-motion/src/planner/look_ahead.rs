@@ -656,8 +656,6 @@ mod tests {
             size_of::<Planner<16, ExactOnly>>(),
             size_of::<Planner<16>>(),
         ];
-        // A word more says what the jerk's limit limits.
-        let most = if cfg!(feature = "averaged-steps") { 1608 } else { 1600 };
-        assert!(sizes.iter().all(|&size| size <= most), "{sizes:?}");
+        assert!(sizes.iter().all(|&size| size <= 1600), "{sizes:?}");
     }
 }

@@ -161,7 +161,7 @@ impl Rise {
         );
         let in_plane = (after2.abs() - before2.abs()).abs();
         if in_plane > 0.0 {
-            return least(of_z, 2.0 * limits.accel() * limits.junction_deviation_mm / in_plane);
+            return least(of_z, 2.0 * limits.accel() * limits.junction_deviation_mm() / in_plane);
         }
         of_z
     }

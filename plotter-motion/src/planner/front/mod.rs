@@ -303,7 +303,7 @@ impl<M: Modes> Front<M> {
             }
             PathMode::Exact => {
                 let way = Way::new(run.at.way_to(to));
-                if way.length_mm < limits.resolution_mm {
+                if way.length_mm < limits.resolution_mm() {
                     self.short_cruise2 = cruise2;
                 } else {
                     self.short_cruise2 = 0.0;
@@ -435,7 +435,7 @@ impl<M: Modes> Front<M> {
         let (out_mm, end_mm) = (out.length_near(), end.length_near());
         let near_mm = least(out_mm, end_mm);
         let length_mm = 0.5 * (out_mm + end_mm) * sweep_rad.abs();
-        if least(length_mm, near_mm) <= limits.resolution_mm {
+        if least(length_mm, near_mm) <= limits.resolution_mm() {
             return self.line(to, Pen::Down, cruise2, limits, ring);
         }
         self.run(Pen::Down, limits, ring);

@@ -47,7 +47,7 @@ impl<M: Modes> Front<M> {
                 let sweep_rad = single(sweep_rad);
                 let length_mm = 0.5 * (out_mm + end_mm) * sweep_rad.abs();
                 let near_mm = least(out_mm, end_mm);
-                let is_arc = least(length_mm, near_mm) > limits.resolution_mm;
+                let is_arc = least(length_mm, near_mm) > limits.resolution_mm();
                 (Pen::Down, to, is_arc.then_some((centre, sweep_rad, (out, end), near_mm, length_mm)))
             }
             PlotOp::Draw { to, .. } => (Pen::Down, to, None),
