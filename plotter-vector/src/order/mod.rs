@@ -309,10 +309,13 @@ impl Order {
             let mut sites = Sites::new(all_vertices(legs.strokes));
             sites.reserve(count);
             let rings = same_pen().flatten().filter(|trail| trail.closed).count();
-            let most = if self.effort == OrderEffort::Best { RING_PLACES } else { FAST_RING_PLACES };
+            let looks = self.looks_per_stroke(all);
+            // Without a search all is that of the fast order.
+            let is_best = self.effort == OrderEffort::Best && looks > Some(0);
+            let most = if is_best { RING_PLACES } else { FAST_RING_PLACES };
             same_pen().for_each(|unit| add_site(&mut sites, legs, unit, (rings, most)));
             let mut entries = sites.nearest_first(travel.at);
-            if let Some(looks) = self.looks_per_stroke(all) {
+            if let Some(looks) = looks {
                 let shakes = self.effort == OrderEffort::Best;
                 entries = shorten(&sites, entries, travel.at, looks * count as u64, shakes);
             }
