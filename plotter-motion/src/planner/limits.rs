@@ -33,6 +33,10 @@ pub(super) struct Limits {
     narrowed_mm: [f32; 2],
 }
 
+fn narrowed_mm(settings: &PlannerSettings) -> [f32; 2] {
+    [settings.junction_deviation_mm, settings.resolution_mm].map(narrow)
+}
+
 impl Limits {
     pub(super) fn of(settings: &PlannerSettings) -> Self {
         /// The pen's share of a belt's motion along its diagonal: √½, rounded down so that no limit is
@@ -52,26 +56,25 @@ impl Limits {
             speed2: narrow(speed_mm_s * speed_mm_s),
             travel2: narrow(travel_speed_mm_s * travel_speed_mm_s),
             #[cfg(not(feature = "averaged-steps"))]
-            narrowed_mm: [settings.junction_deviation_mm, settings.resolution_mm].map(narrow),
+            narrowed_mm: narrowed_mm(settings),
         }
     }
 
     /// How far a corner may be missed by a machine that rounds it by itself, mm.
     pub(super) fn junction_deviation_mm(&self) -> f32 {
-        #[cfg(not(feature = "averaged-steps"))]
-        let [deviation_mm, _] = self.narrowed_mm;
-        #[cfg(feature = "averaged-steps")]
-        let deviation_mm = narrow(self.settings.junction_deviation_mm);
-        deviation_mm
+        self.narrowed_mm()[0]
     }
 
     /// What is shorter is no way of its own, mm.
     pub(super) fn resolution_mm(&self) -> f32 {
+        self.narrowed_mm()[1]
+    }
+
+    fn narrowed_mm(&self) -> [f32; 2] {
         #[cfg(not(feature = "averaged-steps"))]
-        let [_, resolution_mm] = self.narrowed_mm;
+        return self.narrowed_mm;
         #[cfg(feature = "averaged-steps")]
-        let resolution_mm = narrow(self.settings.resolution_mm);
-        resolution_mm
+        narrowed_mm(&self.settings)
     }
 
     /// Greatest acceleration that every direction allows, mm/s².

@@ -86,7 +86,7 @@ pub fn run(session: &Session, heading: &Heading) -> io::Result<bool> {
     result
 }
 
-/// Most characters of what is typed: the longest command has seven numbers.
+/// Most bytes of what is typed: a name of 9 letters and six numbers of ten characters need 75.
 const MOST_TYPED: usize = 80;
 
 /// What is typed behind a colon.

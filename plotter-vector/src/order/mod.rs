@@ -118,8 +118,8 @@ const LOOKS_PER_STROKE: u64 = 5_000;
 /// other.
 const FAST_LOOKS: u64 = 5_000_000;
 
-/// Most places of a ring that it considers: with a third of those of the other the neighbours are found in a
-/// ninth of the time, and the start itself is chosen afterwards among all places.
+/// Most places of a ring that [`OrderEffort::Fast`] considers: with a third of those of the other the
+/// neighbours are found in a ninth of the time, and the start is chosen afterwards among all places.
 const FAST_RING_PLACES: usize = 4;
 
 /// Looks at each stroke below which it does not begin: twice what a first descent takes on the 1,300 strokes
