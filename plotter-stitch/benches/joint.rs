@@ -34,6 +34,14 @@ fn joints(criterion: &mut Criterion) {
         group.bench_function(format!("{name} crossings"), |bench| {
             bench.iter(|| fit.estimate(black_box(&crossings), black_box(&clean)));
         });
+        // A stroke beside every mark, each of them another pose that explains as much, or nearly.
+        for [beside_mm, missed] in [[3.0, 0.0], [3.0, 5.0]] {
+            let strokes = clean.iter().map(|mark| Found { at_mm: mark.at_mm + beside_mm, ..*mark });
+            let among: Vec<Found> = clean.iter().skip(missed as usize).copied().chain(strokes).collect();
+            group.bench_function(format!("{name} crossings, strokes beside all, {missed} missed"), |bench| {
+                bench.iter(|| fit.estimate(black_box(&crossings), black_box(&among)));
+            });
+        }
         let mut dusty = clean;
         for index in [1, 6, 13] {
             dusty[index].at_mm += 2.0;

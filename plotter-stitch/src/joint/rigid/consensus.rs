@@ -172,22 +172,21 @@ impl Spread {
 
     /// The row around which most others lie.
     fn densest(&self, shifts_mm: &[f32; MOST_CROSSINGS], from: usize, to: usize) -> (f32, u64) {
-        /// One over the square of [`NEAR_MM`], 1/mm²: a product in place of a quotient in the inner loop.
-        const PER_SQUARE: f32 = 1.0 / (NEAR_MM * NEAR_MM);
         let turned_mm = &shifts_mm[from..to];
         let mut best = (0.0, 0.0);
-        for &centre_mm in turned_mm {
-            let mut score = 0.0;
-            for &other_mm in turned_mm {
-                let off_mm = other_mm - centre_mm;
-                let near = 1.0 - off_mm * off_mm * PER_SQUARE;
-                if near > 0.0 {
-                    score += near;
+        let mut take = |scores: &[f32], centres_mm: &[f32]| {
+            for (&score, &centre_mm) in scores.iter().zip(centres_mm) {
+                if score > best.0 {
+                    best = (score, centre_mm);
                 }
             }
-            if score > best.0 {
-                best = (score, centre_mm);
-            }
+        };
+        let (fours, rest) = turned_mm.as_chunks::<4>();
+        for centres_mm in fours {
+            take(&scores(turned_mm, *centres_mm), centres_mm);
+        }
+        for centre_mm in rest {
+            take(&scores(turned_mm, [*centre_mm]), &[*centre_mm]);
         }
         let mut mask = 0;
         for (&off_mm, &index) in turned_mm.iter().zip(&self.index[from..to]) {
@@ -197,4 +196,20 @@ impl Spread {
         }
         (best.0, mask)
     }
+}
+
+/// How many rows lie around each of some places, those that are off for less. The sums lie side by side: as
+/// many as the narrowest vector unit is wide, and as the registers of a processor hold that has none.
+fn scores<const N: usize>(turned_mm: &[f32], centres_mm: [f32; N]) -> [f32; N] {
+    /// One over the square of [`NEAR_MM`], 1/mm²: a product in place of a quotient in the inner loop.
+    const PER_SQUARE: f32 = 1.0 / (NEAR_MM * NEAR_MM);
+    let mut scores = [0.0; N];
+    for &other_mm in turned_mm {
+        for (score, centre_mm) in scores.iter_mut().zip(centres_mm) {
+            let off_mm = other_mm - centre_mm;
+            let near = 1.0 - off_mm * off_mm * PER_SQUARE;
+            *score += if near > 0.0 { near } else { 0.0 };
+        }
+    }
+    scores
 }
