@@ -112,6 +112,12 @@ impl ShaftEstimator {
         }
     }
 
+    /// The same of a shaft that pulses move.
+    pub(super) const fn in_jerks(mut self) -> Self {
+        self.motion.in_jerks = true;
+        self
+    }
+
     pub(super) const fn motion(&self) -> &ShaftMotion {
         &self.motion
     }

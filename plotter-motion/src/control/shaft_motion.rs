@@ -29,6 +29,8 @@ pub(super) struct ShaftMotion {
     /// of it.
     at_upper: bool,
     at_lower: bool,
+    /// Whether pulses move it, between which it slows down or stands.
+    pub(super) in_jerks: bool,
 }
 
 /// How much of a difference a filter takes, by the time since it took the last.
@@ -59,6 +61,7 @@ impl ShaftMotion {
             down: false,
             at_upper: false,
             at_lower: false,
+            in_jerks: false,
         }
     }
 
@@ -160,6 +163,12 @@ impl ShaftMotion {
             Decoding::X1 => (-0.5, 1.0),
             Decoding::X2 | Decoding::X4 => (0.0, 1.0),
         };
+        // Sped up evenly it would have left its interval by now; by pulses it is moved in jerks. Only with x1 is
+        // it asked how well the place of a rest is known.
+        if matches!(self.decoding, Decoding::X1) && !self.in_jerks {
+            let evenly = 2.0 * (most - least) / self.since_correction_s.max(SHORTEST_S);
+            self.speed_doubt = self.speed_doubt.min(evenly);
+        }
         let inside = self.offset.clamp(least, most);
         let beyond = self.offset - inside;
         if beyond == 0.0 {
@@ -284,6 +293,26 @@ mod tests {
         assert_eq!(count_after_an_edge_down(rests_at(0.44), 0.01), 0);
         assert_eq!(count_after_an_edge_down(rests_at(0.56), 0.06), 1);
         assert_eq!(count_after_an_edge_down(rests_at(0.56), 0.4), 1);
+    }
+
+    /// Pushed with about what friction holds, a shaft takes 14 ms to its edge: what its acceleration may be off
+    /// by would make 4200 counts/s of that, and it had passed many edges by then.
+    #[test]
+    fn a_slow_shaft_is_known_to_be_slow() {
+        let slow = |in_jerks| {
+            let mut motion = ShaftMotion { in_jerks, ..ShaftMotion::at_rest(Decoding::X1, 900.0) };
+            motion.enter(Direction::Plus);
+            motion.offset = 0.3;
+            for _ in 0..35 {
+                motion.wait(4e-4);
+                motion.doubts(3.0 * FRICTION, 4e-4);
+                motion.without_edge(FRICTION);
+            }
+            motion.speed_doubt
+        };
+        assert!((slow(false) - 2.0 / 14e-3).abs() < 1.0, "{}", slow(false));
+        // pulses may have left it standing till the last one
+        assert!((slow(true) - 4200.0).abs() < 1.0, "{}", slow(true));
     }
 
     #[test]

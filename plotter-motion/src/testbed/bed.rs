@@ -1,6 +1,6 @@
 //! [`TestBed`]: a controller on simulated motors, and how far from the line the pen truly was.
 
-use super::{Figures, LateLoop, misjudged};
+use super::{Figures, HandlingTimes, LateLoop, misjudged};
 use crate::control::LineController;
 use crate::plant::{AxisPlant, DriveDelay};
 use crate::{
@@ -30,6 +30,8 @@ pub struct TestBedSettings {
     pub wrong_share: f64,
     /// By how much the runs of the controller's loop are late.
     pub late_loop: LateLoop,
+    /// How long the controller's processor works on each thing: what comes meanwhile waits.
+    pub handling: HandlingTimes,
 }
 
 impl Default for TestBedSettings {
@@ -43,6 +45,7 @@ impl Default for TestBedSettings {
             settled_mm: 0.05,
             wrong_share: 0.25,
             late_loop: LateLoop::default(),
+            handling: HandlingTimes::default(),
         }
     }
 }
@@ -193,15 +196,30 @@ struct Run<'a, C: ?Sized> {
     controller: &'a mut C,
     axes: [AxisPlant; 2],
     gate: SafetyGate,
+    /// What the motors are driven with, and from when on.
     drive: Drive<'static>,
+    next_drive: Option<(Duration, Drive<'static>)>,
     delay: DriveDelay,
     now: Duration,
     /// The next run of the loop: when it should come, and when it does.
     next_tick: Option<(Duration, Duration)>,
     ticks: u64,
+    /// Edges that came, the first first, which the processor has not worked on yet.
+    edges: [Option<Edge>; MOST_EDGES],
+    /// Until when the processor works on something.
+    busy_until: Duration,
 }
 
-/// More edges than this of one axis in a time step are no motor any more.
+/// An edge of an encoder, and when it came.
+#[derive(Clone, Copy)]
+struct Edge {
+    at: Duration,
+    axis: Axis,
+    direction: Direction,
+}
+
+/// Edges that wait at most: more than this of both motors in a time step are no motors any more, and a board's
+/// queue has as many places.
 const MOST_EDGES: usize = 64;
 
 impl<'a, C: LineController + ?Sized> Run<'a, C> {
@@ -216,79 +234,95 @@ impl<'a, C: LineController + ?Sized> Run<'a, C> {
             axes: [AxisPlant::new(&config.x, dt_s), AxisPlant::new(&config.y, dt_s)],
             gate: SafetyGate::new(LimitSwitches::RELEASED, false),
             drive: Drive::default(),
+            next_drive: None,
             delay: DriveDelay::of(&bed.machine),
             now: Duration::ZERO,
+            edges: [None; MOST_EDGES],
+            busy_until: Duration::ZERO,
         }
     }
 
     fn start(&mut self, target: StepPoint) {
         let demand = self.controller.start(self.now, target);
-        self.apply(demand);
+        self.apply(demand, self.busy_until);
     }
 
-    fn apply(&mut self, demand: Demand) {
-        self.drive = self.gate.pass(demand).kept();
-        self.controller.applied(self.drive);
+    /// Drives the motors so from a time on.
+    fn apply(&mut self, demand: Demand, from: Duration) {
+        self.take_drive(from);
+        let drive = self.gate.pass(demand).kept();
+        self.next_drive = Some((from, drive));
+        self.controller.applied(drive);
+    }
+
+    /// Takes what the motors are to be driven with from a time up to this one on.
+    fn take_drive(&mut self, now: Duration) {
+        if let Some((_, drive)) = self.next_drive.take_if(|(from, _)| *from <= now) {
+            self.drive = drive;
+        }
     }
 
     /// Goes on by one time step; the electrical energy that was taken in it, J.
     fn step(&mut self) -> f64 {
         let time_step = self.bed.settings.time_step;
-        let end = self.now + time_step;
-        let mut edges = [[(Duration::ZERO, Direction::Plus); MOST_EDGES]; 2];
-        let mut counts = [0_usize; 2];
         let mut energy_j = 0.0;
         let start = self.now;
+        self.take_drive(start);
         let duties = self.delay.pass(start, self.drive);
-        for (((plant, duty), edges), count) in
-            self.axes.iter_mut().zip(duties).zip(&mut edges).zip(&mut counts)
-        {
+        for ((plant, duty), axis) in self.axes.iter_mut().zip(duties).zip(Axis::BOTH) {
             plant.step(duty, |edge| {
-                if let Some(place) = edges.get_mut(*count) {
-                    *place = (start + time_step.mul_f64(edge.share_of_step), edge.direction);
-                    *count += 1;
-                }
+                let at = start + time_step.mul_f64(edge.share_of_step);
+                put(&mut self.edges, Edge { at, axis, direction: edge.direction });
             });
             // What flows back while a motor brakes warms the bridge; no supply takes it.
             energy_j += plant.power_w(duty).max(0.0) * time_step.as_secs_f64();
         }
-        let [x, y] = &edges;
-        let (mut x, mut y) = (x.iter().take(counts[0]).peekable(), y.iter().take(counts[1]).peekable());
-        loop {
-            let first = match (x.peek(), y.peek()) {
-                (Some((at_x, _)), Some((at_y, _))) if at_y < at_x => Axis::Y,
-                (None, Some(_)) => Axis::Y,
-                (Some(_), _) => Axis::X,
-                (None, None) => break,
-            };
-            let next = if first == Axis::X { x.next() } else { y.next() };
-            if let Some(&(at, direction)) = next {
-                // An edge is known to the microsecond, as a timer has it.
-                let at = Duration::from_micros(u64::try_from(at.as_micros()).unwrap_or(u64::MAX));
-                self.ticks_until(at);
-                let demand = self.controller.edge(at, first, direction);
-                self.apply(demand);
-            }
-        }
-        self.ticks_until(end);
-        self.now = end;
+        self.now = start + time_step;
+        while self.handle() {}
         energy_j
     }
 
-    fn ticks_until(&mut self, end: Duration) {
-        while let (Some((due, at)), Some(period)) = (self.next_tick, self.controller.period()) {
-            if at > end {
-                return;
+    /// Begins with what the processor is to do next, an edge before a run of the loop where both wait; whether
+    /// there was something by now.
+    fn handle(&mut self) -> bool {
+        let next_edge = self.edges.first().copied().flatten();
+        // An edge is known to the microsecond, as a timer has it.
+        let told = |edge: Edge| Duration::from_micros(u64::try_from(edge.at.as_micros()).unwrap_or(u64::MAX));
+        let edge = next_edge.map(|edge| (told(edge).max(self.busy_until), edge));
+        let tick = self.next_tick.map(|(due, at)| (at.max(self.busy_until), due));
+        match (edge, tick, self.controller.period()) {
+            (edge, Some((at, due)), Some(period))
+                if at <= self.now
+                    && edge
+                        .is_none_or(|(edge_at, _)| at < edge_at || at == edge_at && at > self.busy_until) =>
+            {
+                let demand = self.controller.tick(at);
+                self.worked(at, self.bed.settings.handling.run, demand);
+                self.ticks += 1;
+                let period = period.max(Duration::from_micros(1));
+                let missed = u32::try_from(at.saturating_sub(due).as_micros() / period.as_micros())
+                    .unwrap_or(u32::MAX);
+                let due = due.saturating_add(period.saturating_mul(missed.saturating_add(1)));
+                self.next_tick = Some((due, (due + self.bed.settings.late_loop.delay(self.ticks)).max(at)));
+                true
             }
-            let demand = self.controller.tick(at);
-            self.apply(demand);
-            self.ticks += 1;
-            let period = period.max(Duration::from_micros(1));
-            let missed =
-                u32::try_from(at.saturating_sub(due).as_micros() / period.as_micros()).unwrap_or(u32::MAX);
-            let due = due.saturating_add(period.saturating_mul(missed.saturating_add(1)));
-            self.next_tick = Some((due, (due + self.bed.settings.late_loop.delay(self.ticks)).max(at)));
+            (Some((at, edge)), ..) if at <= self.now => {
+                self.edges.rotate_left(1);
+                if let Some(last) = self.edges.last_mut() {
+                    *last = None;
+                }
+                let demand = self.controller.edge(told(edge), edge.axis, edge.direction);
+                self.worked(at, self.bed.settings.handling.edge, demand);
+                true
+            }
+            _ => false,
         }
+    }
+
+    /// The processor has begun with something at a time, and works on it so long.
+    fn worked(&mut self, at: Duration, takes: Duration, demand: Demand) {
+        self.busy_until = at.saturating_add(takes);
+        self.apply(demand, self.busy_until);
     }
 
     /// By how many whole counts the controller is wrong about where the worse shaft is.
@@ -311,6 +345,17 @@ impl<'a, C: LineController + ?Sized> Run<'a, C> {
             nearest,
             error_mm: pen.distance(nearest),
             is_measured: is_under_way && moved.is_drawn,
+        }
+    }
+}
+
+/// Puts an edge in its place among those that wait; without a room for it it is lost.
+fn put(edges: &mut [Option<Edge>; MOST_EDGES], edge: Edge) {
+    let place = edges.iter().position(|other| other.is_none_or(|other| edge.at < other.at));
+    if let Some(rest) = place.and_then(|place| edges.get_mut(place..)) {
+        rest.rotate_right(1);
+        if let Some(place) = rest.first_mut() {
+            *place = Some(edge);
         }
     }
 }

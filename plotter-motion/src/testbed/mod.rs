@@ -35,6 +35,7 @@ mod drawing;
 #[cfg(feature = "alloc")]
 mod entry;
 mod figures;
+mod handling_times;
 mod late_loop;
 mod misjudged;
 
@@ -44,5 +45,6 @@ pub use drawing::Drawing;
 #[cfg(feature = "alloc")]
 pub use entry::{Entry, Ranking, Score};
 pub use figures::Figures;
+pub use handling_times::HandlingTimes;
 pub use late_loop::LateLoop;
 pub use misjudged::misjudged;

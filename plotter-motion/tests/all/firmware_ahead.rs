@@ -742,3 +742,36 @@ fn every_step_of_the_measured_drawings_is_at_its_tick() {
         }
     }
 }
+
+/// A row of steps and of the times between them as a number, as `examples/firmware/counts` reckons it: FNV-1a.
+/// Where a machine stood it may begin again whenever its main loop is there.
+fn row(made: &[Made]) -> u64 {
+    let (mut sum, mut last_us) = (0xCBF2_9CE4_8422_2325_u64, None);
+    for (us, step) in made {
+        let after: u64 = last_us.map_or(0, |last_us| us - last_us);
+        let after = if after > 20_000 { 0 } else { after };
+        let bytes = [step.x, step.y].map(|step| step.to_le_bytes()[0]);
+        for byte in after.to_le_bytes().into_iter().chain(bytes) {
+            sum = (sum ^ u64::from(byte)).wrapping_mul(0x100_0000_01B3);
+        }
+        last_us = Some(*us);
+    }
+    sum
+}
+
+/// The drawings on which planning is measured as `examples/firmware/counts/check --drawings` wants them, in the
+/// file that `PLOTTER_DRAWINGS` names: a line with a name and what [`row`] is in each mode, then the drawing's
+/// lines.
+#[test]
+#[ignore = "by hand: examples/firmware/counts/check --drawings runs it"]
+fn the_drawings_for_a_board() {
+    let Some(path) = std::env::var_os("PLOTTER_DRAWINGS") else { return };
+    let mut file = String::new();
+    for drawing in drawings::built().into_iter().chain(drawings::real()) {
+        let text = as_text(&drawing.ops);
+        assert!(!text.contains(';') && text.lines().all(|line| line.len() < 48), "{}", drawing.name);
+        let rows = modes().map(|planner| format!("{:x}", row(&in_one(settings(planner), &text).0)));
+        file += &format!(";{}\t{}\n{text}", drawing.name, rows.join("\t"));
+    }
+    std::fs::write(path, file).unwrap();
+}

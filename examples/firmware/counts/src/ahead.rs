@@ -63,9 +63,22 @@ impl Row {
 }
 
 /// A line of G-code.
-struct Line {
+#[derive(Clone, Copy)]
+pub struct Line {
     bytes: [u8; 48],
     len: usize,
+}
+
+impl Line {
+    const EMPTY: Self = Self { bytes: [0; 48], len: 0 };
+
+    /// A line of a text, with its end.
+    fn of(text: &str) -> Self {
+        let mut line = Self::EMPTY;
+        // What is too long is left out, and then the steps are others.
+        let _ = write!(line, "{text}\n");
+        line
+    }
 }
 
 impl core::fmt::Write for Line {
@@ -78,51 +91,76 @@ impl core::fmt::Write for Line {
     }
 }
 
-/// A drawing as a program would send it: it counts characters.
-struct Host<I> {
+/// The lines of a text.
+pub fn lines(text: &str) -> impl Iterator<Item = Line> {
+    text.lines().map(Line::of)
+}
+
+/// A drawing in lines.
+pub struct Written<I> {
     ops: I,
-    line: Line,
     is_down: bool,
     /// An operation that waits until the pen is where it should be.
     waits: Option<PlotOp>,
     ended: bool,
+}
+
+impl<I: Iterator<Item = PlotOp>> Written<I> {
+    pub fn new(ops: I) -> Self {
+        Self { ops, is_down: false, waits: None, ended: false }
+    }
+}
+
+impl<I: Iterator<Item = PlotOp>> Iterator for Written<I> {
+    type Item = Line;
+
+    fn next(&mut self) -> Option<Line> {
+        let mut line = Line::EMPTY;
+        let op = self.waits.take().or_else(|| self.ops.next());
+        let _ = match op {
+            Some(PlotOp::Travel { to }) if !self.is_down => write!(line, "G0X{:.3}Y{:.3}\n", to.x, to.y),
+            Some(PlotOp::Draw { to, .. }) if self.is_down => {
+                write!(line, "G1X{:.3}Y{:.3}F50000\n", to.x, to.y)
+            }
+            Some(op) => {
+                self.is_down = !self.is_down;
+                self.waits = Some(op);
+                line.write_str(if self.is_down { "M3\n" } else { "M5\n" })
+            }
+            None if core::mem::replace(&mut self.ended, true) => return None,
+            None => line.write_str("M5\n"),
+        };
+        Some(line)
+    }
+}
+
+/// A program that sends lines and counts characters.
+struct Host<I> {
+    lines: I,
+    /// The next line, which the machine's buffer has not taken.
+    line: Option<Line>,
     owed: [usize; 128],
     first: usize,
     count: usize,
     sum: usize,
 }
 
-impl<I: Iterator<Item = PlotOp>> Host<I> {
-    fn new(ops: I) -> Self {
-        let line = Line { bytes: [0; 48], len: 0 };
-        Self { ops, line, is_down: false, waits: None, ended: false, owed: [0; 128], first: 0, count: 0, sum: 0 }
+impl<I: Iterator<Item = Line>> Host<I> {
+    fn new(mut lines: I) -> Self {
+        let line = lines.next();
+        Self { lines, line, owed: [0; 128], first: 0, count: 0, sum: 0 }
     }
 
     /// The next line, if the buffer of the machine takes it.
-    fn next(&mut self) -> Option<&[u8]> {
-        if self.line.len == 0 {
-            let op = self.waits.take().or_else(|| self.ops.next());
-            let _ = match op {
-                Some(PlotOp::Travel { to }) if !self.is_down => write!(self.line, "G0X{:.3}Y{:.3}\n", to.x, to.y),
-                Some(PlotOp::Draw { to, .. }) if self.is_down => {
-                    write!(self.line, "G1X{:.3}Y{:.3}F50000\n", to.x, to.y)
-                }
-                Some(op) => {
-                    self.is_down = !self.is_down;
-                    self.waits = Some(op);
-                    self.line.write_str(if self.is_down { "M3\n" } else { "M5\n" })
-                }
-                None if core::mem::replace(&mut self.ended, true) => return None,
-                None => self.line.write_str("M5\n"),
-            };
-        }
-        if self.sum + self.line.len > 127 || self.count == self.owed.len() {
+    fn next(&mut self) -> Option<Line> {
+        let line = self.line?;
+        if self.sum + line.len > 127 || self.count == self.owed.len() {
             return None;
         }
-        self.owed[(self.first + self.count) % self.owed.len()] = self.line.len;
-        (self.count, self.sum) = (self.count + 1, self.sum + self.line.len);
-        let len = core::mem::take(&mut self.line.len);
-        self.line.bytes.get(..len)
+        self.owed[(self.first + self.count) % self.owed.len()] = line.len;
+        (self.count, self.sum) = (self.count + 1, self.sum + line.len);
+        self.line = self.lines.next();
+        Some(line)
     }
 
     /// Takes a byte of an answer: each `ok` has one k.
@@ -135,7 +173,7 @@ impl<I: Iterator<Item = PlotOp>> Host<I> {
     }
 
     fn is_done(&self) -> bool {
-        self.ended && self.count == 0 && self.line.len == 0 && self.waits.is_none()
+        self.line.is_none() && self.count == 0
     }
 }
 
@@ -147,11 +185,11 @@ fn plotter(settings: StepperPlotterSettings) -> Option<Plotter> {
     Plotter::with_modes(settings, SafetyGate::new(LimitSwitches::RELEASED, false)).ok()
 }
 
-/// In one piece, whose main loop is always there.
+/// The row of steps of the controller in one piece, whose main loop is always there.
 #[inline(never)]
-fn in_one(settings: StepperPlotterSettings, ops: impl Iterator<Item = PlotOp>) -> Row {
-    let (mut row, mut host) = (Row::new(), Host::new(ops));
-    let Some(mut plotter) = plotter(settings) else { return row };
+pub fn in_one(planner: PlannerSettings, lines: impl Iterator<Item = Line>) -> u64 {
+    let (mut row, mut host) = (Row::new(), Host::new(lines));
+    let Some(mut plotter) = plotter(settings(planner)) else { return 0 };
     let mut now = Duration::ZERO;
     // The greeting, which no line is answered by.
     while plotter.transmit(now).is_some() {}
@@ -165,7 +203,7 @@ fn in_one(settings: StepperPlotterSettings, ops: impl Iterator<Item = PlotOp>) -
             heard = true;
         }
         while let Some(line) = host.next() {
-            for byte in line {
+            for byte in &line.bytes[..line.len] {
                 plotter.receive(now, *byte);
             }
             heard = true;
@@ -173,7 +211,7 @@ fn in_one(settings: StepperPlotterSettings, ops: impl Iterator<Item = PlotOp>) -
         match plotter.due() {
             _ if heard => {}
             Some(due) => now = now.max(due),
-            None if host.is_done() => return row,
+            None if host.is_done() => return row.sum,
             None => {}
         }
     }
@@ -240,21 +278,20 @@ impl Board<'_, '_> {
     }
 }
 
-/// Draws in two halves.
+/// Draws in two halves; `alone` is the row of steps of the controller in one piece.
 #[inline(never)]
-pub fn draw<I: Iterator<Item = PlotOp>>(
+pub fn draw(
     counter: &Counter,
     planner: PlannerSettings,
     memory: &mut StepsAhead<WORDS>,
-    ops: impl Fn() -> I,
+    lines: impl Iterator<Item = Line>,
+    alone: u64,
 ) -> Figures {
-    let settings = settings(planner);
-    let alone = in_one(settings, ops());
-    let Some(plotter) = plotter(settings) else { return Figures::default() };
+    let Some(plotter) = plotter(settings(planner)) else { return Figures::default() };
     let Ok((planning, stepping)) = plotter.split(memory) else { return Figures::default() };
     let figures = Figures::default();
     let mut board = Board { planning, stepping, counter, now: 0, busy: 0, row: Row::new(), figures };
-    let mut host = Host::new(ops());
+    let mut host = Host::new(lines);
     while board.planning.transmit(Duration::ZERO).is_some() {}
     loop {
         if board.us() % EVERY_US >= EVERY_US - AWAY_US {
@@ -275,7 +312,7 @@ pub fn draw<I: Iterator<Item = PlotOp>>(
             heard = true;
         }
         while let Some(line) = host.next() {
-            for byte in line {
+            for byte in &line.bytes[..line.len] {
                 let now = board.now();
                 let (_, instructions) = counter.count(|| board.planning.receive(now, *byte));
                 board.take(instructions);
@@ -293,7 +330,7 @@ pub fn draw<I: Iterator<Item = PlotOp>>(
     board.figures.steps = board.row.count;
     board.figures.late = board.planning.lateness().steps();
     board.figures.slowed = board.planning.underruns().slowed_steps;
-    board.figures.is_same = board.row.sum == alone.sum;
+    board.figures.is_same = board.row.sum == alone;
     board.figures.instructions = board.busy;
     board.figures.busy = board.busy * 1000 / board.now.max(1);
     board.figures.ms = board.us() / 1000;

@@ -239,21 +239,70 @@ fn in_two_halves(
     let part = if cfg!(feature = "rp2040") { 2 } else { 1 };
     for drawing in drawings {
         let figures = match *drawing {
-            "hatch" => ahead::draw(counter, planner, memory, || drawings::hatch().take(8 / part)),
-            "spiral" => ahead::draw(counter, planner, memory, || drawings::spiral().take(300 / part)),
-            "zigzag" => ahead::draw(counter, planner, memory, || drawings::zigzag().take(80)),
-            _ => ahead::draw(counter, planner, memory, || drawings::strokes().take(64)),
+            "hatch" => drawn_so(counter, planner, memory, || drawings::hatch().take(8 / part)),
+            "spiral" => drawn_so(counter, planner, memory, || drawings::spiral().take(300 / part)),
+            "zigzag" => drawn_so(counter, planner, memory, || drawings::zigzag().take(80)),
+            _ => drawn_so(counter, planner, memory, || drawings::strokes().take(64)),
         };
-        let ahead::Figures { steps, late, slowed, is_same, instructions, busy, ms, .. } = figures;
-        hprintln!(
-            "ahead {} {} at {}: {} steps in {} ms, {} late, {} slowed, same {}, {} instructions a step, busy {} of 1000",
-            mode, drawing, rate, steps, ms, late, slowed, is_same, instructions / u64::from(steps.max(1)), busy
-        );
+        tell(format_args!("{mode} {drawing} at {rate}"), &figures);
         plan.join(figures.plan);
         tick.join(figures.tick);
     }
     print(format_args!("ahead {mode} call of plan"), plan);
     print(format_args!("ahead {mode} step interrupt"), tick);
+}
+
+#[cfg(feature = "ahead")]
+/// What comes of a drawing in two halves, beside one piece that draws the same here.
+fn drawn_so<I: Iterator<Item = PlotOp>>(
+    counter: &Counter,
+    planner: PlannerSettings,
+    memory: &mut StepsAhead<{ ahead::WORDS }>,
+    ops: impl Fn() -> I,
+) -> ahead::Figures {
+    let alone = ahead::in_one(planner, ahead::Written::new(ops()));
+    ahead::draw(counter, planner, memory, ahead::Written::new(ops()), alone)
+}
+
+#[cfg(feature = "ahead")]
+fn tell(what: impl Display, figures: &ahead::Figures) {
+    let ahead::Figures { steps, late, slowed, is_same, instructions, busy, ms, .. } = figures;
+    let each = instructions / u64::from((*steps).max(1));
+    hprintln!(
+        "ahead {}: {} steps in {} ms, {} late, {} slowed, same {}, {} instructions a step, busy {} of 1000",
+        what, steps, ms, late, slowed, is_same, each, busy
+    );
+}
+
+/// The drawings on which planning is measured, whole, as a desktop has written them: a line with a name and
+/// the row of steps that the desktop's controller in one piece makes in each mode, then the drawing's lines.
+#[cfg(feature = "drawings")]
+fn whole_drawings(counter: &Counter) {
+    const TEXT: &str = include_str!(env!("PLOTTER_DRAWINGS"));
+    let mut memory = StepsAhead::<{ ahead::WORDS }>::new();
+    let exact = PlannerSettings { accel_mm_s2: 2000.0, ..PlannerSettings::default() };
+    let (path, jerk_mm_s3) = (PathMode::Tolerance { path_tolerance_mm: 0.1 }, Some(50_000.0));
+    let modes = [
+        ("exact", exact),
+        ("tolerance", PlannerSettings { path, ..exact }),
+        ("s-curve", PlannerSettings { jerk_mm_s3, ..exact }),
+        ("tolerance s-curve", PlannerSettings { path, jerk_mm_s3, ..exact }),
+    ];
+    for drawing in TEXT.split(';').skip(1) {
+        let Some((head, lines)) = drawing.split_once('\n') else { continue };
+        let (mut plan, mut tick) = (Tally::default(), Tally::default());
+        let mut words = head.split('\t');
+        let name = words.next().unwrap_or_default();
+        for ((mode, planner), sum) in modes.into_iter().zip(words) {
+            let alone = u64::from_str_radix(sum, 16).unwrap_or_default();
+            let figures = ahead::draw(counter, planner, &mut memory, ahead::lines(lines), alone);
+            tell(format_args!("{mode}, {name}"), &figures);
+            plan.join(figures.plan);
+            tick.join(figures.tick);
+        }
+        print(format_args!("ahead {name} call of plan"), plan);
+        print(format_args!("ahead {name} step interrupt"), tick);
+    }
 }
 
 #[cfg(feature = "ahead")]
@@ -287,6 +336,11 @@ fn main() -> ! {
     if cfg!(feature = "rp2040") {
         #[cfg(feature = "rp2040")]
         all_in_two_halves(&counter);
+        debug::exit(debug::EXIT_SUCCESS);
+    }
+    #[cfg(feature = "drawings")]
+    {
+        whole_drawings(&counter);
         debug::exit(debug::EXIT_SUCCESS);
     }
     let Ok(machine) = Machine::new(MachineConfig::default()) else { loop {} };
