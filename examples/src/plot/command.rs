@@ -17,7 +17,7 @@ use plotter_motion::{
 };
 use plotter_replay::compare::Ways;
 use plotter_vector::{
-    Algorithm, Drawing, Scale, TracedSheet, Vectorizer,
+    Drawing, Ours, Scale, TracedSheet, Vectorizer,
     picture::FileNotes,
     trace::{Prefer, SheetErrors},
 };
@@ -138,7 +138,7 @@ pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
     let summary = Summary {
         drawing: &traced.drawing,
         errors: &errors,
-        kept: (vectorizer.algorithm == Algorithm::Ours).then(|| is_kept(&vectorizer, &traced, &errors)),
+        kept: vectorizer.ours().map(|ours| is_kept(ours, &traced, &errors)),
         dirt: traced.removed,
         outcome: &outcome,
         plotted: plotter.contour_error(Ways::Drawn),
@@ -179,10 +179,10 @@ pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
 }
 
 /// Whether all ink is drawn within the greatest error, and nothing else.
-fn is_kept(vectorizer: &Vectorizer, traced: &TracedSheet, errors: &SheetErrors) -> bool {
+fn is_kept(ours: &Ours, traced: &TracedSheet, errors: &SheetErrors) -> bool {
     traced.removed.removed_marks == 0
         && traced.look.is_none_or(|look| look.left_out == 0)
-        && errors.are_within(vectorizer.ours.tolerance_px)
+        && errors.are_within(ours.tolerance_px)
 }
 
 /// Moves of the machine; the files of the drawing are written meanwhile.
@@ -276,13 +276,15 @@ fn trace(args: &PlotCommand, machine: &Machine) -> Result<Plan, String> {
     }
     let (scale, size) = fit_picture(&notes, &asked, machine)?;
     let mut vectorizer = match args.algorithm {
-        AlgorithmArg::Published => Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() },
+        AlgorithmArg::Published => Vectorizer::published(),
         // One pen, whatever the file says: this machine has no carousel.
         AlgorithmArg::Ours => vectorizer(&machine.config().vectorize, scale.mm_per_px())?,
     };
     // A photograph's rims are ragged, in even light, too: ink that is bare there is worth no stroke.
-    if paper.is_some() {
-        vectorizer.prefer = Prefer::Strokes;
+    if paper.is_some()
+        && let Some(ours) = vectorizer.ours_mut()
+    {
+        ours.prefer = Prefer::Strokes;
     }
     let (traced, read) = vectorized(&vectorizer, bytes, page).map_err(|error| at(path, &error))?;
     doubted(traced.doubt, IN_MACHINE_FILE).map_err(|error| at(path, &error))?;
@@ -298,11 +300,11 @@ fn trace(args: &PlotCommand, machine: &Machine) -> Result<Plan, String> {
 
 /// Notes on the chart of the errors: the thesis' figures, or the bound that ours promises.
 pub(super) fn promises(vectorizer: &Vectorizer) -> Vec<String> {
-    match vectorizer.algorithm {
-        Algorithm::Published => vec![
+    match vectorizer.ours() {
+        None => vec![
             "published: flag mean 0.0991, max 2.0392, sd 0.2435 px;".into(),
             "technical drawing mean 0.0042, max 0.5547, sd 0.0386 px".into(),
         ],
-        Algorithm::Ours => vec![format!("promised: {} px at most", vectorizer.ours.tolerance_px)],
+        Some(ours) => vec![format!("promised: {} px at most", ours.tolerance_px)],
     }
 }

@@ -33,4 +33,5 @@ pub use telling::Telling;
 pub use told_ink::{assumed, told_ink};
 pub(crate) use told_spots::{told_bare, told_insides};
 pub use vectorize_settings::vectorizer;
+pub(crate) use vectorize_settings::{ours, threshold};
 pub use work_shown::WorkShown;

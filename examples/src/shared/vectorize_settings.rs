@@ -2,10 +2,10 @@
 
 use plotter_motion::config::{PiecesChoice, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode};
 use plotter_vector::{
-    Mode, Order, Threshold, ThresholdMethod, Vectorizer,
+    Mode, Order, Ours, Threshold, ThresholdMethod, Vectorizer,
     areas::{AreaStyle, Areas, Hatch, MIN_PITCH_PX},
     order::OrderEffort,
-    stroke::{Bounded, Pieces},
+    stroke::Pieces,
 };
 
 /// The vectorizer, ours, that a machine's file asks for; `mm_per_px` is the size of the picture's pixels on
@@ -15,12 +15,26 @@ use plotter_vector::{
 ///
 /// Hatching closer than the picture's pixels.
 pub fn vectorizer(config: &VectorizeConfig, mm_per_px: f64) -> Result<Vectorizer, String> {
-    let method = match config.threshold {
+    Ok(Vectorizer::from(ours(config, mm_per_px)?).with_threshold(threshold(config.threshold)))
+}
+
+/// How ink is told from paper.
+pub(crate) fn threshold(choice: ThresholdChoice) -> Threshold {
+    let method = match choice {
         ThresholdChoice::Adaptive => ThresholdMethod::Adaptive,
         ThresholdChoice::Level(level) => ThresholdMethod::Level(level),
         ThresholdChoice::Otsu => ThresholdMethod::Otsu,
         _ => ThresholdMethod::Auto,
     };
+    Threshold { method, ..Threshold::default() }
+}
+
+/// Ours; `mm_per_px` and errors as for [`vectorizer`].
+///
+/// # Errors
+///
+/// Hatching closer than the picture's pixels.
+pub(crate) fn ours(config: &VectorizeConfig, mm_per_px: f64) -> Result<Ours, String> {
     let mode = match config.mode {
         VectorizeMode::Outline => Mode::Outline,
         VectorizeMode::Mixed => Mode::Mixed,
@@ -36,7 +50,7 @@ pub fn vectorizer(config: &VectorizeConfig, mm_per_px: f64) -> Result<Vectorizer
         PiecesChoice::Cubics => Pieces::Cubics,
         _ => Pieces::Lines,
     };
-    let usual = Vectorizer::default();
+    let usual = Ours::default();
     let mut areas = usual.areas;
     if config.pen_mm > 0.0 {
         areas.pen_px = config.pen_mm / mm_per_px;
@@ -52,14 +66,12 @@ pub fn vectorizer(config: &VectorizeConfig, mm_per_px: f64) -> Result<Vectorizer
         }
         areas = Areas { style: AreaStyle::OutlineAndHatch(Hatch { pitch_px, ..Hatch::default() }), ..areas };
     }
-    Ok(Vectorizer {
-        mode,
-        threshold: Threshold { method, ..usual.threshold },
-        ours: Bounded { tolerance_px: config.max_error_px },
-        pieces,
-        max_line_px: (config.max_line_px > 0).then_some(config.max_line_px),
-        order: Order { effort, ..usual.order },
-        areas,
-        ..usual
-    })
+    let mut ours = usual
+        .with_mode(mode)
+        .with_tolerance_px(config.max_error_px)
+        .with_pieces(pieces)
+        .with_order(Order { effort, ..usual.order })
+        .with_areas(areas);
+    ours.max_line_px = (config.max_line_px > 0).then_some(config.max_line_px);
+    Ok(ours)
 }

@@ -1,13 +1,13 @@
 //! The settings of a trace, from its options and the machine's file.
 
 use super::command::{Choice, ModeChoice, OrderChoice, PreferChoice, RulingChoice, TraceCommand};
-use crate::shared::{PictureSize, at, read_file, vectorizer};
+use crate::shared::{PictureSize, at, ours, read_file, threshold};
 use plotter_motion::{
     Machine,
     config::{PensChoice, PiecesChoice, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode},
 };
 use plotter_vector::{
-    Algorithm, Palette, Prefer, ThresholdMethod, Vectorizer,
+    Palette, Prefer, ThresholdMethod, Vectorizer,
     ink::{MAX_PENS, Pens},
 };
 use std::ops::RangeInclusive;
@@ -53,10 +53,10 @@ impl Unscaled {
     pub(super) fn in_size(self, size: PictureSize, page: u32) -> Result<Settings, String> {
         let Self { mut vectorizer, config, pens, threads, overlay, gap_mm, min_stroke_mm, keep_pale } = self;
         vectorizer.threshold.keep_pale = keep_pale;
-        vectorizer.gap_px = gap_mm.map(|gap_mm| gap_mm / size.mm_per_px);
-        vectorizer.min_stroke_px = min_stroke_mm / size.mm_per_px;
-        if vectorizer.algorithm == Algorithm::Ours {
-            vectorizer.areas = self::vectorizer(&config, size.mm_per_px)?.areas;
+        if let Some(ours) = vectorizer.ours_mut() {
+            ours.gap_px = gap_mm.map(|gap_mm| gap_mm / size.mm_per_px);
+            ours.min_stroke_px = min_stroke_mm / size.mm_per_px;
+            ours.areas = self::ours(&config, size.mm_per_px)?.areas;
         }
         Ok(Settings { vectorizer, pens, threads, overlay, size, page })
     }
@@ -97,9 +97,7 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Unscaled, String> {
     let overlay = arguments.overlay.clone().or(in_file);
     if matches!(arguments.algorithm, Choice::Published) {
         refuse_ours(arguments)?;
-        let threshold =
-            vectorizer(&VectorizeConfig { threshold: config.threshold, ..Default::default() }, 1.0)?;
-        let vectorizer = Vectorizer { algorithm: Algorithm::Published, ..threshold };
+        let vectorizer = Vectorizer::published().with_threshold(threshold(config.threshold));
         return Ok(Unscaled {
             vectorizer,
             config,
@@ -179,7 +177,8 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Unscaled, String> {
     };
     // What is in mm waits for the picture's size.
     let unscaled = VectorizeConfig { hatch_mm: 0.0, pen_mm: 0.0, ..config };
-    let vectorizer = Vectorizer { prefer, ..vectorizer(&unscaled, 1.0)? };
+    let ours = ours(&unscaled, 1.0)?.with_prefer(prefer);
+    let vectorizer = Vectorizer::from(ours).with_threshold(threshold(config.threshold));
     Ok(Unscaled { vectorizer, config, pens, threads, overlay, gap_mm, min_stroke_mm, keep_pale })
 }
 

@@ -11,7 +11,11 @@ use crate::stroke::PxPoint;
 /// How an area is hatched. The lines' distance from the picture's corner is the same in all areas, so that
 /// bands and neighbours fit together.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct Hatch {
     /// From line to line, px; at least [`MIN_PITCH_PX`]. Up to the pen's width the ink closes, and the whole
     /// area is covered.

@@ -144,7 +144,11 @@ impl<'de> serde::Deserialize<'de> for ThresholdMethod {
 
 /// How ink is told from paper. The default finds everything from the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct Threshold {
     /// Which side of the level is ink.
     pub polarity: Polarity,

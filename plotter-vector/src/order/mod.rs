@@ -81,7 +81,11 @@ pub enum OrderEffort {
 /// assert_eq!((ordered.strokes().len(), ordered.pen_up_px()), (3, 1.0 + 10.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct Order {
     /// How hard the order is searched for.
     pub effort: OrderEffort,
@@ -95,15 +99,12 @@ pub struct Order {
     pub one_stroke: bool,
     /// Whether pens are changed wherever that shortens the way, and not only once each: for drawings of one
     /// tool.
-    #[cfg_attr(feature = "serde", serde(default))]
     pub across_pens: bool,
     /// Whether ends within `merge_gap_px` are joined at corners too, where `one_stroke` is set: for files
     /// whose corners do not quite meet.
-    #[cfg_attr(feature = "serde", serde(default))]
     pub bridges_corners: bool,
     /// What lifting and lowering the pen costs, as the way that it travels in that time, px. The order with
     /// the least sum of travel and lifts is taken.
-    #[cfg_attr(feature = "serde", serde(default))]
     pub lift_px: f64,
     /// How lettering is found, so that each block of it is drawn in one go, in reading order; `None` does not
     /// look.

@@ -36,6 +36,11 @@ const MIRRORED: [(i32, i32); 8] = [(-1, 0), (-1, 1), (0, 1), (1, 1), (1, 0), (1,
 
 /// Settings of the published tracking.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct OrderedTracking {
     /// A walk of fewer pixels is undone and left for the scan from the opposite side, px.
     pub min_run: usize,

@@ -13,6 +13,11 @@ use crate::picture::Pixel;
 ///
 /// Source: Öcal's thesis on a two-axis gantry, section 3.2, eq. 3.1 to 3.3.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct PreElimination {
     /// Distance of A and C from B along the figure, px.
     pub reach: usize,

@@ -14,7 +14,7 @@ use core::f64::consts::TAU;
 use frechet::{some_start_is_within, within};
 use lines::{arcs_and_lines, ellipse, random, sampled, sine, spiral, wild};
 use plotter_vector::{
-    Bitmap, Curve, Drawing, Order, Pixel, PxPoint, Vectorizer,
+    Bitmap, Curve, Drawing, Order, Ours, Pixel, PxPoint, Vectorizer,
     order::OrderEffort,
     stroke::{Bounded, Pieces},
 };
@@ -164,7 +164,7 @@ fn a_drawn_circle_comes_out_as_one() {
     for (radius, width_px) in [(20.3, 3.0), (60.4, 3.0), (77.7, 5.0)] {
         let ink = picture(200, |x, y| (x - 100.2).hypot(y - 99.6) - radius, width_px);
         let drawing =
-            Vectorizer { pieces: Pieces::Arcs, ..Vectorizer::default() }.trace(&ink).unwrap().drawing;
+            Vectorizer::from(Ours::default().with_pieces(Pieces::Arcs)).trace(&ink).unwrap().drawing;
         assert_eq!(drawing.strokes().len(), 1, "{radius} {width_px}");
         let (centre, found) = drawing.curve(0).circle().unwrap();
         assert!(centre.distance(PxPoint::new(100.2, 99.6)) < 0.1 && (found - radius).abs() < 0.1, "{found}");
@@ -185,7 +185,7 @@ fn lines_one_pixel_wide_get_arcs_where_they_save_vertices() {
             }
         }
     }
-    let arcs = Vectorizer { pieces: Pieces::Arcs, ..Vectorizer::default() }.trace(&ink).unwrap();
+    let arcs = Vectorizer::from(Ours::default().with_pieces(Pieces::Arcs)).trace(&ink).unwrap();
     let straight = Vectorizer::default().trace(&ink).unwrap();
     // The centres of the pixels are up to half a pixel off the circle: hardly one circle holds them all.
     let (few, many) = (arcs.drawing.vertices(), straight.drawing.vertices());

@@ -67,7 +67,11 @@ const OPEN_BLOCKS: usize = 32;
 /// assert_eq!((blocks[0].lines[0].height_px, blocks[0].lines[0].angle_rad), (12.0, 0.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct Lettering {
     /// Height of the smallest letters, px.
     pub min_height_px: f64,

@@ -26,6 +26,11 @@ use crate::{picture::Pixel, stroke::PreElimination};
 /// assert_eq!(DynamicThreshold::default().keep(&level), [0, 99]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct DynamicThreshold {
     /// The pass before.
     pub pre_elimination: PreElimination,
