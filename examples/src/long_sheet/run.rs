@@ -8,7 +8,7 @@ use plotter_stitch::{
     ReferenceLines, SheetSettings, StripJoin,
     paper::{PaperSettings, SensedPaper},
     sense::SearchSettings,
-    sheet::{FoldCheck, JoinFrames, JointReport, PublishedJoin},
+    sheet::{FoldCheck, JoinFrames, JointReport, PublishedJoin, SheetConfig},
 };
 
 /// Most fits by hand at one frame change; then something else is wrong.
@@ -46,11 +46,10 @@ impl LongSheetMachine {
     /// # Errors
     ///
     /// That the machine moves no sheet, or that its head does not reach the marks.
-    pub fn new(machine: &Machine) -> Result<Self, String> {
+    pub fn new(machine: &Machine, sheet: &SheetConfig) -> Result<Self, String> {
         /// From the table's sides to the widest field, mm: the head must see the paper's edges beside it.
         const BESIDE_MM: f64 = 10.0;
         let config = machine.config();
-        let sheet = config.sheet;
         if sheet.frame_mm <= 0.0 {
             return Err(
                 "sheet.frame_mm is 0: this machine moves no sheet; machines/textile-plotter.toml does".into(),

@@ -5,7 +5,7 @@ use super::pictures::Pictures;
 use super::recording::{record, replay};
 use crate::shared::{
     IN_MACHINE_FILE, PaperOption, SizeOptions, Telling, at, doubted, fit_picture, html_page, lost_ink,
-    read_file, run, told_ink, told_notes, vectorized, vectorizer, write_file,
+    read_file, run, told_ink, told_notes, vectorized, write_file,
 };
 use clap::{Parser, ValueEnum};
 use plotter_motion::{
@@ -19,6 +19,7 @@ use plotter_replay::compare::Ways;
 use plotter_vector::{
     Drawing, Ours, Scale, TracedSheet, Vectorizer,
     picture::FileNotes,
+    trace::VectorizeConfig,
     trace::{Prefer, SheetErrors},
 };
 use std::fmt::Write as _;
@@ -120,8 +121,8 @@ impl PlotCommand {
 
 pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
     let began = Instant::now();
-    let machine = machine(args)?;
-    let Plan { vectorizer, traced, scale, told } = trace(args, &machine)?;
+    let (machine, vectorize) = machine(args)?;
+    let Plan { vectorizer, traced, scale, told } = trace(args, &machine, &vectorize)?;
     std::fs::create_dir_all(&args.out)
         .map_err(|error| at(&args.out, &format!("this folder cannot be made: {error}")))?;
     let file = |name: &str| args.out.join(name);
@@ -217,12 +218,13 @@ pub(super) fn name(value: &impl ValueEnum) -> String {
     value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
-pub(super) fn machine(args: &PlotCommand) -> Result<Machine, String> {
-    let mut config = match &args.machine {
+/// The machine, and how pictures become strokes for it.
+pub(super) fn machine(args: &PlotCommand) -> Result<(Machine, VectorizeConfig), String> {
+    let (mut config, vectorize) = match &args.machine {
         Some(path) => {
             let text = String::from_utf8(read_file(path)?)
                 .map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
-            let machine = Machine::from_toml(&text).map_err(|error| at(path, &error))?;
+            let (machine, vectorize) = Machine::from_toml_with(&text).map_err(|error| at(path, &error))?;
             let refusal = match (machine.kind(), &args.firmware) {
                 (MachineKind::Steppers, _) => Some(("plot", "plan for this one with the example `stepper`")),
                 (MachineKind::Belt, Some(_)) => {
@@ -235,16 +237,17 @@ pub(super) fn machine(args: &PlotCommand) -> Result<Machine, String> {
                     .require(MachineKind::Gantry, user)
                     .map_err(|error| at(path, &format!("{error}; or {instead}")))?;
             }
-            *machine.config()
+            (*machine.config(), vectorize)
         }
-        None => MachineConfig::default(),
+        None => (MachineConfig::default(), VectorizeConfig::default()),
     };
     match args.controller {
         Some(ControllerArg::Published) => config.control.controller = ControllerChoice::Published,
         Some(ControllerArg::Contouring) => config.control.controller = ControllerChoice::Contouring,
         None => {}
     }
-    Machine::new(config).map_err(|error| error.to_string())
+    let machine = Machine::new(config).map_err(|error| error.to_string())?;
+    Ok((machine, vectorize))
 }
 
 fn picture_path(args: &PlotCommand) -> &Path {
@@ -260,7 +263,7 @@ struct Plan {
     told: Vec<(&'static str, String)>,
 }
 
-fn trace(args: &PlotCommand, machine: &Machine) -> Result<Plan, String> {
+fn trace(args: &PlotCommand, machine: &Machine, vectorize: &VectorizeConfig) -> Result<Plan, String> {
     let mut bytes = match &args.image {
         Some(path) => read_file(path)?,
         None => include_bytes!("../../data/flag.png").to_vec(),
@@ -278,7 +281,7 @@ fn trace(args: &PlotCommand, machine: &Machine) -> Result<Plan, String> {
     let mut vectorizer = match args.algorithm {
         AlgorithmArg::Published => Vectorizer::published(),
         // One pen, whatever the file says: this machine has no carousel.
-        AlgorithmArg::Ours => vectorizer(&machine.config().vectorize, scale.mm_per_px())?,
+        AlgorithmArg::Ours => vectorize.vectorizer(scale.mm_per_px()).map_err(|error| error.to_string())?,
     };
     // A photograph's rims are ragged, in even light, too: ink that is bare there is worth no stroke.
     if paper.is_some()

@@ -1,7 +1,7 @@
 //! Checks of settings that must fit together in a machine with one belt.
 
 use super::error::Bound;
-use super::machine::{MAX_COUNTS, demand};
+use super::machine::MAX_COUNTS;
 use super::{ConfigError, Decoding, MachineConfig};
 use core::f64::consts::TAU;
 
@@ -35,7 +35,7 @@ fn check_motors(config: &MachineConfig) -> Result<(), ConfigError> {
         ("y.motor.enable_pwm_hz", config.y.motor.enable_pwm_hz),
     ] {
         let remedy = "the simulated motors of a belt brake between their pulses";
-        demand(key, hz, (Bound::AtMost, 0.0), "Hz", remedy)?;
+        ConfigError::demand(key, hz, (Bound::AtMost, 0.0), "Hz", remedy)?;
     }
     let lines = |axis: &super::AxisConfig| f64::from(axis.encoder.lines_per_turn);
     for (key, value, of_x, unit) in [
@@ -43,8 +43,8 @@ fn check_motors(config: &MachineConfig) -> Result<(), ConfigError> {
         ("y.encoder.lines_per_turn", lines(&config.y), lines(&config.x), ""),
     ] {
         let remedy = "both motors drive the same belt: write what x has";
-        demand(key, value, (Bound::AtLeast, of_x), unit, remedy)?;
-        demand(key, value, (Bound::AtMost, of_x), unit, remedy)?;
+        ConfigError::demand(key, value, (Bound::AtLeast, of_x), unit, remedy)?;
+        ConfigError::demand(key, value, (Bound::AtMost, of_x), unit, remedy)?;
     }
     Ok(())
 }
@@ -53,7 +53,7 @@ fn check_motors(config: &MachineConfig) -> Result<(), ConfigError> {
 fn check_place(config: &MachineConfig) -> Result<(), ConfigError> {
     // From one corner to the other across, one motor alone makes x + y.
     let farthest_mm = MAX_COUNTS / config.x.counts_per_mm;
-    demand(
+    ConfigError::demand(
         "area.width_mm",
         config.area.width_mm,
         (Bound::AtMost, farthest_mm - config.area.height_mm),
@@ -62,12 +62,24 @@ fn check_place(config: &MachineConfig) -> Result<(), ConfigError> {
          smaller or counts_per_mm less",
     )?;
     let inside = "that is the area: the pen is inside when the machine is switched on";
-    demand("belt.start_x_mm", config.belt.start_x_mm, (Bound::AtMost, config.area.width_mm), "mm", inside)?;
-    demand("belt.start_y_mm", config.belt.start_y_mm, (Bound::AtMost, config.area.height_mm), "mm", inside)
+    ConfigError::demand(
+        "belt.start_x_mm",
+        config.belt.start_x_mm,
+        (Bound::AtMost, config.area.width_mm),
+        "mm",
+        inside,
+    )?;
+    ConfigError::demand(
+        "belt.start_y_mm",
+        config.belt.start_y_mm,
+        (Bound::AtMost, config.area.height_mm),
+        "mm",
+        inside,
+    )
 }
 
 fn check_drive(config: &MachineConfig) -> Result<(), ConfigError> {
-    demand(
+    ConfigError::demand(
         "point_to_point.drive_start",
         config.point_to_point.drive_start,
         (Bound::AtMost, config.point_to_point.drive_most),
@@ -90,9 +102,9 @@ fn check_rails(config: &MachineConfig) -> Result<(), ConfigError> {
         ("belt.y_rail_static_n", belt.y_rail_static_n, belt.y_rail_coulomb_n),
     ] {
         let remedy = "friction at rest is never less than that in motion";
-        demand(key, at_rest_n, (Bound::AtLeast, sliding_n), "N", remedy)?;
+        ConfigError::demand(key, at_rest_n, (Bound::AtLeast, sliding_n), "N", remedy)?;
         let remedy = "the force of both stalled motors, or the carriage never starts";
-        demand(key, at_rest_n, (Bound::LessThan, most_n), "N", remedy)?;
+        ConfigError::demand(key, at_rest_n, (Bound::LessThan, most_n), "N", remedy)?;
     }
     Ok(())
 }

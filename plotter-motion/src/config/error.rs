@@ -115,6 +115,27 @@ impl fmt::Display for Bound {
 }
 
 impl ConfigError {
+    /// Refuses `value` behind `key` unless it lies on the right side of a limit that other values set, all in
+    /// `unit` (empty for a plain number). NaN lies on no side. `remedy` says where the limit is from and what
+    /// would be right.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError::Conflict`].
+    pub fn demand(
+        key: &'static str,
+        value: f64,
+        (bound, limit): (Bound, f64),
+        unit: &'static str,
+        remedy: &'static str,
+    ) -> Result<(), Self> {
+        if bound.holds(value, limit) {
+            Ok(())
+        } else {
+            Err(Self::Conflict { key, value, bound, limit, unit, remedy })
+        }
+    }
+
     /// The key that is wrong, as written in the TOML file.
     #[must_use]
     pub const fn key(&self) -> &'static str {

@@ -54,8 +54,7 @@ impl Machine {
     /// - a jerk that is limited as a vector goes with a tolerance, without a laser or a third axis, and is
     ///   not so small that more steps would have to be averaged than there is room for.
     ///
-    /// Where frames of a long sheet are drawn, each lies in the area with the windows at its borders,
-    /// and the simulated motor has torque up to some rate, more than its friction.
+    /// The simulated motor has torque up to some rate, more than its friction.
     ///
     /// # Errors
     ///
@@ -65,7 +64,6 @@ impl Machine {
             return Err(ConfigError::Schema { found: config.schema });
         }
         rules().try_for_each(|rule| rule.check(&config))?;
-        check_sheet(&config)?;
         match config.drive {
             DriveChoice::Dc => {
                 match config.kinematics.kind {
@@ -114,32 +112,17 @@ const RUNS_PER_POSITION_PERIOD: f64 = 10.0;
 /// Runs of the loop in a period of the estimator: with fewer its discrete form rings.
 const RUNS_PER_OBSERVER_PERIOD: f64 = 4.0;
 
-/// Refuses `value` behind `key` unless it lies on the right side of `limit`.
-pub(super) fn demand(
-    key: &'static str,
-    value: f64,
-    (bound, limit): (Bound, f64),
-    unit: &'static str,
-    remedy: &'static str,
-) -> Result<(), ConfigError> {
-    if bound.holds(value, limit) {
-        Ok(())
-    } else {
-        Err(ConfigError::Conflict { key, value, bound, limit, unit, remedy })
-    }
-}
-
 fn check_area(config: &MachineConfig) -> Result<(), ConfigError> {
     let width_limit_mm = MAX_COUNTS / config.x.counts_per_mm;
     let height_limit_mm = MAX_COUNTS / config.y.counts_per_mm;
-    demand(
+    ConfigError::demand(
         "area.width_mm",
         config.area.width_mm,
         (Bound::AtMost, width_limit_mm),
         "mm",
         "the serial protocol carries coordinates up to 99999 counts: make the area smaller or x.counts_per_mm less",
     )?;
-    demand(
+    ConfigError::demand(
         "area.height_mm",
         config.area.height_mm,
         (Bound::AtMost, height_limit_mm),
@@ -148,31 +131,9 @@ fn check_area(config: &MachineConfig) -> Result<(), ConfigError> {
     )
 }
 
-/// A frame and the windows at both of its borders lie in the area.
-fn check_sheet(config: &MachineConfig) -> Result<(), ConfigError> {
-    let sheet = &config.sheet;
-    if sheet.frame_mm <= 0.0 {
-        return Ok(());
-    }
-    demand(
-        "sheet.cut_window_mm",
-        sheet.cut_window_mm,
-        (Bound::AtMost, sheet.begin_mm.min(0.25 * sheet.frame_mm)),
-        "mm",
-        "the frame before and this one both draw there: at most sheet.begin_mm and a quarter of sheet.frame_mm",
-    )?;
-    demand(
-        "sheet.frame_mm",
-        sheet.frame_mm,
-        (Bound::AtMost, config.area.height_mm - sheet.begin_mm - sheet.cut_window_mm),
-        "mm",
-        "the frame ends within the area: area.height_mm less sheet.begin_mm and sheet.cut_window_mm",
-    )
-}
-
 fn check_serial(config: &MachineConfig) -> Result<(), ConfigError> {
     let byte_ms = 1_000.0 * BITS_PER_BYTE / f64::from(config.serial.baud);
-    demand(
+    ConfigError::demand(
         "serial.resync_gap_ms",
         config.serial.resync_gap_ms,
         (Bound::MoreThan, config.serial.byte_gap_ms + byte_ms),
@@ -183,14 +144,14 @@ fn check_serial(config: &MachineConfig) -> Result<(), ConfigError> {
 
 fn check_control(config: &MachineConfig) -> Result<(), ConfigError> {
     let contouring = &config.control.contouring;
-    demand(
+    ConfigError::demand(
         "control.contouring.bandwidth_hz",
         contouring.bandwidth_hz,
         (Bound::AtMost, contouring.loop_hz / RUNS_PER_POSITION_PERIOD),
         "Hz",
         "a tenth of control.contouring.loop_hz: run the loop more often or take less bandwidth",
     )?;
-    demand(
+    ConfigError::demand(
         "control.contouring.observer_hz",
         contouring.observer_hz,
         (Bound::AtMost, contouring.loop_hz / RUNS_PER_OBSERVER_PERIOD),
@@ -234,7 +195,7 @@ fn check_jerk(config: &MachineConfig) -> Result<(), ConfigError> {
             crate::stepgen::AVERAGED_STEPS,
         )
     {
-        return demand(
+        return ConfigError::demand(
             "planner.jerk_mm_s3",
             jerk_mm_s3,
             (Bound::AtLeast, libm::ceil(least_mm_s3)),
@@ -272,14 +233,14 @@ const Y: AxisKeys = AxisKeys {
 
 fn check_axis(axis: &AxisConfig, keys: &AxisKeys, config: &MachineConfig) -> Result<(), ConfigError> {
     let AxisConfig { motor, load, .. } = axis;
-    demand(
+    ConfigError::demand(
         keys.static_friction,
         load.static_n_m,
         (Bound::AtLeast, load.coulomb_n_m),
         "N m",
         "friction at rest is never less than coulomb_n_m, the friction in motion",
     )?;
-    demand(
+    ConfigError::demand(
         keys.static_friction,
         load.static_n_m,
         (Bound::LessThan, motor.torque_n_m_per_a * motor.supply_v / motor.resistance_ohm),
@@ -288,7 +249,7 @@ fn check_axis(axis: &AxisConfig, keys: &AxisKeys, config: &MachineConfig) -> Res
     )?;
     if config.control.controller == ControllerChoice::Contouring {
         if motor.enable_pwm_hz > 0.0 {
-            demand(
+            ConfigError::demand(
                 keys.enable_pwm,
                 motor.enable_pwm_hz,
                 (Bound::AtLeast, config.control.contouring.loop_hz),
@@ -299,7 +260,7 @@ fn check_axis(axis: &AxisConfig, keys: &AxisKeys, config: &MachineConfig) -> Res
         let counts_per_rad = axis.counts_per_turn() / core::f64::consts::TAU;
         let motor_mm_s = config.control.contouring.feed_mm_s * config.motor_mm_per_mm();
         let shaft_rad_s = motor_mm_s * axis.counts_per_mm / counts_per_rad;
-        demand(
+        ConfigError::demand(
             keys.supply,
             motor.supply_v,
             (Bound::MoreThan, shaft_rad_s * motor.back_emf_v_s),
@@ -327,14 +288,14 @@ fn check_cartesian(config: &MachineConfig) -> Result<(), ConfigError> {
 
 fn check_stepper_motor(config: &MachineConfig) -> Result<(), ConfigError> {
     let motor = &config.stepper_motor;
-    demand(
+    ConfigError::demand(
         "stepper_motor.max_rate_hz",
         motor.max_rate_hz,
         (Bound::MoreThan, motor.corner_rate_hz),
         "pulses/s",
         "that is stepper_motor.corner_rate_hz, up to which the motor has all its torque",
     )?;
-    demand(
+    ConfigError::demand(
         "stepper_motor.coulomb_n_m",
         motor.coulomb_n_m,
         (Bound::LessThan, motor.holding_n_m),
@@ -353,9 +314,9 @@ fn check_third_axis(config: &MachineConfig) -> Result<(), ConfigError> {
     }
     for (key, height_mm) in [("z.up_mm", z.up_mm), ("z.down_mm", z.down_mm)] {
         let remedy = "the axis goes no higher: z.travel_mm";
-        demand(key, height_mm, (Bound::AtMost, z.travel_mm), "mm", remedy)?;
+        ConfigError::demand(key, height_mm, (Bound::AtMost, z.travel_mm), "mm", remedy)?;
     }
-    demand(
+    ConfigError::demand(
         "z.speed_mm_s",
         z.speed_mm_s,
         (Bound::AtMost, MOST_HZ / z.steps_per_mm),
@@ -371,7 +332,7 @@ fn check_stepper(
     config: &MachineConfig,
 ) -> Result<(), ConfigError> {
     let stepper = &axis.stepper;
-    demand(
+    ConfigError::demand(
         keys.start_rate,
         stepper.start_rate_hz,
         (Bound::AtMost, stepper.max_rate_hz),
@@ -383,7 +344,7 @@ fn check_stepper(
         ("homing.slow_rate_hz", config.homing.slow_rate_hz),
     ] {
         let remedy = "that is the greatest rate of an axis, stepper.max_rate_hz";
-        demand(key, rate_hz, (Bound::AtMost, stepper.max_rate_hz), "pulses/s", remedy)?;
+        ConfigError::demand(key, rate_hz, (Bound::AtMost, stepper.max_rate_hz), "pulses/s", remedy)?;
     }
     for (key, speed_mm_s) in [
         ("planner.speed_mm_s", config.planner.speed_mm_s),
@@ -391,16 +352,16 @@ fn check_stepper(
     ] {
         let most_mm_s = stepper.max_rate_hz / stepper.steps_per_mm;
         let remedy = "the greatest speed of an axis (stepper.max_rate_hz / stepper.steps_per_mm)";
-        demand(key, speed_mm_s, (Bound::AtMost, most_mm_s), "mm/s", remedy)?;
+        ConfigError::demand(key, speed_mm_s, (Bound::AtMost, most_mm_s), "mm/s", remedy)?;
     }
-    demand(
+    ConfigError::demand(
         keys.area,
         length_mm,
         (Bound::AtMost, MAX_STEPS / stepper.steps_per_mm),
         "mm",
         "positions are steps of 32 bits: make the area smaller or stepper.steps_per_mm less",
     )?;
-    demand(
+    ConfigError::demand(
         keys.area,
         length_mm,
         (Bound::AtMost, config.homing.max_travel_mm - 2.0 * config.homing.pull_off_mm),

@@ -1,9 +1,8 @@
 //! [`MachineConfig`]: a machine's description, with the documented gantry as default.
 
 use super::{
-    BeltConfig, DriveChoice, FollowerConfig, HomingConfig, KinematicsChoice, KinematicsConfig, LaserConfig,
-    MachineName, PenConfig, PlannerConfig, PointToPointConfig, SheetConfig, StepperConfig,
-    TransmissionConfig, VectorizeConfig,
+    BeltConfig, DriveChoice, HomingConfig, KinematicsChoice, KinematicsConfig, LaserConfig, MachineName,
+    PenConfig, PlannerConfig, PointToPointConfig, StepperConfig, TransmissionConfig,
 };
 #[cfg(feature = "third-motor")]
 use super::{SecondMotorConfig, ZConfig};
@@ -51,12 +50,6 @@ pub struct MachineConfig {
     pub second_motor: SecondMotorConfig,
     /// Its motors, both alike, as they are simulated.
     pub stepper_motor: StepperSettings,
-    /// How pictures become strokes for it.
-    pub vectorize: VectorizeConfig,
-    /// How drawings longer than the table are drawn.
-    pub sheet: SheetConfig,
-    /// Its camera beside the tool, where it follows lines.
-    pub follower: FollowerConfig,
     /// How the two motors move the pen.
     pub kinematics: KinematicsConfig,
     /// Settings for a machine with one belt only.
@@ -364,7 +357,6 @@ impl MachineConfig {
     /// # use plotter_motion::{Machine, MachineConfig};
     /// let machine = Machine::new(MachineConfig::textile_plotter())?;
     /// assert_eq!(machine.config().planner.travel_speed_mm_s, 10_000.0);
-    /// assert_eq!(machine.config().sheet.frame_mm, 950.0);
     /// # Ok::<(), plotter_motion::ConfigError>(())
     /// ```
     #[must_use]
@@ -405,7 +397,6 @@ impl MachineConfig {
                 viscous_n_m_s: 0.01,
                 ..StepperSettings::default()
             },
-            sheet: SheetConfig::TEXTILE_PLOTTER,
             x: axis,
             y: axis,
             ..Self::stepper_plotter()
@@ -485,9 +476,6 @@ impl Default for MachineConfig {
             #[cfg(feature = "third-motor")]
             second_motor: SecondMotorConfig::default(),
             stepper_motor: StepperSettings::default(),
-            vectorize: VectorizeConfig::default(),
-            sheet: SheetConfig::default(),
-            follower: FollowerConfig::default(),
             kinematics: KinematicsConfig::default(),
             belt: BeltConfig::default(),
             point_to_point: PointToPointConfig::default(),

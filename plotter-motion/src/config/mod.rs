@@ -9,14 +9,13 @@
 mod belt_check;
 mod belt_rules;
 mod error;
-mod follower;
 mod kinematics;
 mod machine;
 mod machine_config;
 mod machine_kind;
 mod name;
 mod rules;
-mod sheet;
+mod section;
 #[cfg(feature = "toml")]
 mod spelling;
 mod stepper;
@@ -27,10 +26,8 @@ mod toml_error;
 #[cfg(feature = "toml")]
 mod toml_file;
 mod transmission;
-mod vectorize;
 
 pub use error::{Bound, ConfigError};
-pub use follower::FollowerConfig;
 pub use kinematics::{BeltConfig, KinematicsChoice, KinematicsConfig, KnownMotors, PointToPointConfig};
 pub use machine::Machine;
 pub(crate) use machine_config::CLAMPS_V;
@@ -40,7 +37,7 @@ pub use machine_config::{
 };
 pub use machine_kind::MachineKind;
 pub use name::{FileName, MachineName, ShortText};
-pub use sheet::SheetConfig;
+pub use section::{Key, Section};
 pub use stepper::{
     AccelChoice, DriveChoice, HomingConfig, JerkChoice, LaserConfig, PathChoice, PenConfig, PenLift,
     PlannerConfig, StepperConfig,
@@ -50,4 +47,3 @@ pub use third_motor::{SecondMotorChoice, SecondMotorConfig, ZConfig};
 #[cfg(feature = "toml")]
 pub use toml_error::{TomlError, TomlPlace};
 pub use transmission::TransmissionConfig;
-pub use vectorize::{PensChoice, PiecesChoice, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode};

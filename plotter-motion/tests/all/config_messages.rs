@@ -39,8 +39,12 @@ fn a_slip_of_the_pen_is_understood() {
 }
 
 #[test]
-fn a_key_of_an_older_file_is_told_what_it_is_called_today() {
-    assert_snapshot!(message("[vectorize]\ncurves = true"), @r#"line 3, column 1: unknown key `vectorize.curves`; write `pieces = "cubics"` for `curves = true`, and nothing for `curves = false`"#);
+fn a_section_of_another_crate_is_taken_unread_by_its_name_alone() {
+    for section in ["vectorize", "sheet", "follower"] {
+        assert_eq!(message(&format!("[{section}]\nsped = -1")), "accepted");
+    }
+    assert_snapshot!(message("[vektorize]"), @"line 2, column 2: unknown key `vektorize`; did you mean `vectorize`?");
+    assert_snapshot!(message("sheet = 3"), @"line 2, column 9: sheet: a whole number; it is a table: write [sheet], and its keys on the lines below");
 }
 
 #[test]

@@ -1,16 +1,19 @@
-//! [`FollowerConfig`]: what a machine has that follows lines with a camera beside its tool.
+//! [`FollowerConfig`]: what a machine's file says of a camera beside its tool.
 
-use super::rules::{Rule, number};
+use plotter_motion::config::{Key, Section};
 
 /// A camera beside the tool, and the tool's width: the table `[follower]` of a machine's file.
 ///
-/// The defaults are a camera above the tool, which takes nothing away.
+/// The defaults are a camera above the tool, which takes nothing away. With the feature `serde`, and `toml` of
+/// plotter-motion, [`Machine::from_toml_with`](plotter_motion::Machine::from_toml_with) reads it beside the
+/// machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct FollowerConfig {
     /// How far right of the tool the camera looks, mm.
     pub camera_x_mm: f64,
@@ -24,33 +27,41 @@ pub struct FollowerConfig {
 }
 
 /// Keys of the table.
-pub(super) static RULES: [Rule; 4] = [
-    number(
+static KEYS: [Key<FollowerConfig>; 4] = [
+    Key::number(
         "follower.camera_x_mm",
-        |c| c.follower.camera_x_mm,
+        |c| c.camera_x_mm,
         (-1000.0, 1000.0),
         "mm",
         "0 if the camera looks at the tool's place",
     ),
-    number(
+    Key::number(
         "follower.camera_y_mm",
-        |c| c.follower.camera_y_mm,
+        |c| c.camera_y_mm,
         (-1000.0, 1000.0),
         "mm",
         "0 if the camera looks at the tool's place",
     ),
-    number(
+    Key::number(
         "follower.camera_turn_deg",
-        |c| c.follower.camera_turn_deg,
+        |c| c.camera_turn_deg,
         (-180.0, 180.0),
         "deg",
         "0 if what lies to the right in its picture lies along x",
     ),
-    number(
+    Key::number(
         "follower.kerf_mm",
-        |c| c.follower.kerf_mm,
+        |c| c.kerf_mm,
         (0.0, 50.0),
         "mm",
         "0 for a pen; a plasma torch takes 1 to 3",
     ),
 ];
+
+impl Section for FollowerConfig {
+    const NAME: &'static str = "follower";
+
+    fn keys() -> &'static [Key<Self>] {
+        &KEYS
+    }
+}
