@@ -23,6 +23,7 @@ use core::time::Duration;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::pwm::{self, SetDutyCycle};
 use plotter_motion::Machine;
+use plotter_motion::config::SteppersConfig;
 
 /// A measured point of a servo: pulse width and angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,7 +111,7 @@ impl PenServoSettings {
     /// ```
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
-        let pen = &machine.config().pen;
+        let pen = &SteppersConfig::of(machine).pen;
         #[expect(clippy::cast_possible_truncation, reason = "0 to 270 degrees")]
         let deg = |deg: f64| deg as f32;
         Self {

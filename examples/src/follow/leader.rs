@@ -4,6 +4,7 @@ use super::command::FollowCommand;
 use super::kerf::beside;
 use super::led::Led;
 use crate::follow::FollowMachine;
+use plotter_motion::config::SteppersConfig;
 use plotter_motion::drawing::{Drawing, Stroke};
 use plotter_motion::{Machine, Point, Vec2};
 use plotter_vector::{PxPoint, follow::FollowerConfig};
@@ -37,14 +38,15 @@ impl Leader {
         arguments: &FollowCommand,
     ) -> Result<Self, String> {
         let config = machine.config();
+        let steppers = SteppersConfig::of(machine);
         let step = |steps_per_mm: f64| 1.0 / steps_per_mm;
         Ok(Self {
             led: Led::open(machine, port, arguments)?,
             camera: Vec2::new(beside.camera_x_mm, beside.camera_y_mm),
             kerf_mm: beside.kerf_mm,
             area_mm: Vec2::new(config.area.width_mm, config.area.height_mm),
-            step_mm: step(config.x.stepper.steps_per_mm).max(step(config.y.stepper.steps_per_mm)),
-            speed_mm_s: config.planner.speed_mm_s,
+            step_mm: step(steppers.x.steps_per_mm).max(step(steppers.y.steps_per_mm)),
+            speed_mm_s: steppers.planner.speed_mm_s,
         })
     }
 

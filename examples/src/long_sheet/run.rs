@@ -1,6 +1,7 @@
 //! [`LongSheetRun`]: a drawing divided into frames, and each frame drawn on a simulated sheet.
 
 use crate::long_sheet::FrameChange;
+use plotter_motion::config::SteppersConfig;
 use plotter_motion::stepgen::{PlotTimer, StepGenSettings};
 use plotter_motion::{Axis, Machine, Planner, PlannerSettings, PlotOp, Point, Vec2};
 use plotter_stitch::{
@@ -50,6 +51,7 @@ impl LongSheetMachine {
         /// From the table's sides to the widest field, mm: the head must see the paper's edges beside it.
         const BESIDE_MM: f64 = 10.0;
         let config = machine.config();
+        let steppers = SteppersConfig::of(machine);
         if sheet.frame_mm <= 0.0 {
             return Err(
                 "sheet.frame_mm is 0: this machine moves no sheet; machines/textile-plotter.toml does".into(),
@@ -65,7 +67,7 @@ impl LongSheetMachine {
         let strip = ReferenceLines::strip16_on(&field);
         let search = SearchSettings { fast_mm_s: sheet.sensing_mm_s, ..SearchSettings::default() };
         // Marks are drawn with the frame before, and looked for after it has been moved.
-        let beyond_mm = config.homing.pull_off_mm;
+        let beyond_mm = steppers.homing.pull_off_mm;
         let y_marks_mm =
             || strip.marks.iter().filter(|group| group.axis == Axis::Y).flat_map(|group| &group.at_mm);
         let least_mm = y_marks_mm().fold(f64::INFINITY, |least, mm| least.min(*mm)) - search.window_mm;

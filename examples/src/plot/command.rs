@@ -8,6 +8,7 @@ use crate::shared::{
     read_file, run, told_ink, told_notes, vectorized, write_file,
 };
 use clap::{Parser, ValueEnum};
+use plotter_motion::config::DcConfig;
 use plotter_motion::{
     Machine, MachineConfig, PenMove, PlotOp,
     config::{ControllerChoice, MachineKind},
@@ -208,7 +209,7 @@ fn moves(
 }
 
 pub(super) fn controller_name(machine: &Machine) -> &'static str {
-    match machine.config().control.controller {
+    match DcConfig::of(machine).control.controller {
         ControllerChoice::Published => "published",
         _ => "contouring",
     }
@@ -241,10 +242,13 @@ pub(super) fn machine(args: &PlotCommand) -> Result<(Machine, VectorizeConfig), 
         }
         None => (MachineConfig::default(), VectorizeConfig::default()),
     };
-    match args.controller {
-        Some(ControllerArg::Published) => config.control.controller = ControllerChoice::Published,
-        Some(ControllerArg::Contouring) => config.control.controller = ControllerChoice::Contouring,
-        None => {}
+    let controller = match args.controller {
+        Some(ControllerArg::Published) => Some(ControllerChoice::Published),
+        Some(ControllerArg::Contouring) => Some(ControllerChoice::Contouring),
+        None => None,
+    };
+    if let (Some(dc), Some(controller)) = (config.dc_mut(), controller) {
+        dc.control.controller = controller;
     }
     let machine = Machine::new(config).map_err(|error| error.to_string())?;
     Ok((machine, vectorize))

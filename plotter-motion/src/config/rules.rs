@@ -5,14 +5,14 @@
 
 use super::belt_rules::BELT;
 use super::transmission::{LATENCY, X_TRANSMISSION, Y_TRANSMISSION};
-use super::{Key, MachineConfig};
+use super::{FileConfig, Key};
 
 /// A key of this crate.
-pub(super) type MachineKey = Key<MachineConfig>;
+pub(super) type MachineKey = Key<FileConfig>;
 
 pub(super) const fn number(
     key: &'static str,
-    read: fn(&MachineConfig) -> f64,
+    read: fn(&FileConfig) -> f64,
     range: (f64, f64),
     unit: &'static str,
     remedy: &'static str,
@@ -22,7 +22,7 @@ pub(super) const fn number(
 
 pub(super) const fn whole(
     key: &'static str,
-    read: fn(&MachineConfig) -> f64,
+    read: fn(&FileConfig) -> f64,
     range: (f64, f64),
     unit: &'static str,
     remedy: &'static str,
@@ -585,7 +585,7 @@ mod tests {
     #[test]
     fn the_documentation_page_gives_every_default() {
         let Some(page) = beside_the_crate("docs/machine-config.md") else { return };
-        let default = MachineConfig::default();
+        let default = FileConfig::default();
         for rule in rules().filter(|rule| !rule.key().starts_with("y.")) {
             let Some(value) = rule.value(&default) else { continue };
             let row = page.lines().find(|line| line.contains(&format!("| `{}` |", rule.key()))).unwrap();

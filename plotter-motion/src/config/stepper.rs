@@ -7,8 +7,7 @@
 /// How the motors are driven.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
-#[non_exhaustive]
-pub enum DriveChoice {
+pub(super) enum DriveChoice {
     /// DC motors with encoders: `[control]`, `[sync_stop]` and the motors, encoders and loads of the axes
     /// hold.
     #[default]
@@ -111,8 +110,7 @@ pub struct PlannerConfig {
     pub accel_limit: AccelChoice,
     /// Greatest acceleration of the pen with [`AccelChoice::Vector`], mm/s^2.
     pub accel_mm_s2: f64,
-    /// Greatest acceleration of the motor `x` with [`AccelChoice::Axes`], mm/s^2; of a motor of a belt, mm of
-    /// the belt.
+    /// Greatest acceleration of the motor `x` with [`AccelChoice::Axes`], mm/s^2.
     pub accel_x_mm_s2: f64,
     /// The same of the motor `y`.
     pub accel_y_mm_s2: f64,

@@ -3,10 +3,10 @@
 //! The file is read twice: first key by key against the list of keys, so that what is wrong is named with
 //! its line and a remedy; then, found to be right, into the fields.
 
-use super::rules::rules;
+use super::rules::{MachineKey, rules};
 use super::section::{Form, Range, Rule};
 use super::spelling::{nearest, remedy};
-use super::{ConfigError, Machine, MachineConfig, Section, TomlError, TomlPlace};
+use super::{ConfigError, FileConfig, Machine, MachineConfig, Section, TomlError, TomlPlace};
 use alloc::{
     format,
     string::{String, ToString as _},
@@ -48,16 +48,25 @@ impl MachineConfig {
     pub fn from_toml(text: &str) -> Result<Self, TomlError> {
         let document = parse(text)?;
         check(text, document.get_ref(), &Keys::of_the_machine())?;
-        Self::of_checked(text, document)
+        let file = FileConfig::of_checked(text, &document)?;
+        let placed = |error| placed(text, &document, error);
+        let config = Self::try_from(file).map_err(placed)?;
+        // What a machine of this kind does not read is checked while it is here.
+        let kept = FileConfig::from(config);
+        let unread = |key: &&MachineKey| key.value(&kept) != key.value(&file);
+        rules().filter(unread).try_for_each(|key| key.check(&file)).map_err(placed)?;
+        Ok(config)
     }
+}
 
+impl FileConfig {
     /// What a document says whose keys have been checked.
-    fn of_checked(text: &str, document: Spanned<DeTable<'_>>) -> Result<Self, TomlError> {
+    fn of_checked(text: &str, document: &Spanned<DeTable<'_>>) -> Result<Self, TomlError> {
         let is_another_s = |name: &str| rules().any(|key| key.key() == name && is_table(&key.rule));
-        let span = document.span();
-        let own = document.into_inner().into_iter().filter(|(name, _)| !is_another_s(name.get_ref()));
-        let own = Spanned::new(span, own.collect());
-        Self::deserialize(Deserializer::from(own)).map_err(|error| syntax(text, &error))
+        let own = document.get_ref().iter().filter(|(name, _)| !is_another_s(name.get_ref()));
+        let own = own.map(|(name, value)| (name.clone(), value.clone())).collect();
+        Self::deserialize(Deserializer::from(Spanned::new(document.span(), own)))
+            .map_err(|error| syntax(text, &error))
     }
 }
 
@@ -106,8 +115,12 @@ impl Machine {
     }
 
     fn of_checked(text: &str, document: &Spanned<DeTable<'_>>) -> Result<Self, TomlError> {
-        let config = MachineConfig::of_checked(text, document.clone())?;
-        Self::new(config).map_err(|error| placed(text, document, error))
+        let file = FileConfig::of_checked(text, document)?;
+        rules()
+            .try_for_each(|key| key.check(&file))
+            .and_then(|()| MachineConfig::try_from(file))
+            .and_then(Self::new)
+            .map_err(|error| placed(text, document, error))
     }
 }
 

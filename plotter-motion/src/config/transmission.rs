@@ -3,7 +3,7 @@
 
 use super::error::Bound;
 use super::rules::{MachineKey, number, whole};
-use super::{AxisConfig, ConfigError, MachineConfig};
+use super::{AxisConfig, ConfigError, DcConfig};
 use core::f64::consts::TAU;
 
 /// Belt, carriage and rail between a DC motor's shaft, where the encoder is, and the pen.
@@ -100,7 +100,7 @@ pub(super) static LATENCY: [MachineKey; 1] = [whole(
 )];
 
 /// Refuses a transmission that cannot be.
-pub(super) fn check_transmission(config: &MachineConfig) -> Result<(), ConfigError> {
+pub(super) fn check_transmission(config: &DcConfig) -> Result<(), ConfigError> {
     let keys = [
         ("x.transmission.carriage_kg", "x.transmission.rail_friction_n"),
         ("y.transmission.carriage_kg", "y.transmission.rail_friction_n"),

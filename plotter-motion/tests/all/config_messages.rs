@@ -102,6 +102,27 @@ fn what_does_not_go_with_a_belt_is_named_with_its_line() {
 }
 
 #[test]
+fn a_machine_is_checked_by_its_kind_of_motor_only() {
+    let stepper = "drive = \"stepper\"\narea = { width_mm = 380, height_mm = 310 }\n";
+    // No DC motor would do.
+    let motor = "y.load.static_n_m = 0.0";
+    assert_eq!(message(&format!("{stepper}{motor}")), "accepted");
+    assert_snapshot!(message(motor), @"line 2, column 21: y.load.static_n_m: 0 N m must be at least 0.0013 N m; friction at rest is never less than coulomb_n_m, the friction in motion");
+    assert_eq!(message("planner.speed_mm_s = 10000.0"), "accepted");
+    // A cartesian machine reads no belt.
+    assert_eq!(message("belt.start_x_mm = 1000\ny.counts_per_mm = 20"), "accepted");
+    // What is not read lies in its range all the same.
+    assert!(message(&format!("{stepper}belt.start_x_mm = -1")).contains("lies outside 0..=100000 mm"));
+}
+
+#[test]
+fn what_a_machine_does_not_read_is_checked_before_it_is_left_out() {
+    let read = |rest: &str| plotter_motion::MachineConfig::from_toml(&format!("schema = 1\n{rest}\n"));
+    assert_eq!(read("pen.up_deg = 120"), Ok(plotter_motion::MachineConfig::default()));
+    assert_snapshot!(read("pen.up_deg = 271").unwrap_err(), @"line 2, column 14: pen.up_deg: 271 deg lies outside 0..=270 deg; a common servo turns from 0 to 180");
+}
+
+#[test]
 fn text_that_is_not_toml_is_refused_with_its_line() {
     assert_snapshot!(message("[area"), @"line 2, column 6: unclosed table, expected `]`");
     assert_snapshot!(message("serial.baud = 9600 baud"), @"line 2, column 15: string values must be quoted, expected literal string");

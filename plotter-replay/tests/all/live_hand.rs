@@ -354,11 +354,11 @@ fn a_stop_leaves_nothing_of_what_was_asked_by_hand() {
 fn board(controller: ControllerChoice) -> Machine {
     let mut config = MachineConfig::marking_board();
     config.serial.byte_gap_ms = 0.0;
-    config.control.controller = controller;
+    config.dc_mut().unwrap().control.controller = controller;
     // The ramp of the report's panel: a step every 100 ms.
-    config.point_to_point.drive_start = 0.15;
-    config.point_to_point.drive_step = 0.05;
-    config.point_to_point.drive_step_ms = 100.0;
+    config.belt_mut().unwrap().point_to_point.drive_start = 0.15;
+    config.belt_mut().unwrap().point_to_point.drive_step = 0.05;
+    config.belt_mut().unwrap().point_to_point.drive_step_ms = 100.0;
     Machine::new(config).unwrap()
 }
 

@@ -63,7 +63,7 @@ fn an_emergency_stop_takes_the_drive_within_one_control_period() {
     }
     let session = watched(line, square(), None::<Recording<LogFile>>, settings(4), steps);
     assert_eq!(session.reached(), 4);
-    let period = Duration::from_secs_f64(1.0 / machine.config().control.contouring.loop_hz);
+    let period = Duration::from_secs_f64(1.0 / machine.config().dc().unwrap().control.contouring.loop_hz);
     let stops = stops.lock().unwrap();
     assert!(stops.len() == 3 && stops.iter().all(|&(pressed, off)| off - pressed <= period), "{stops:?}");
     assert_eq!(*moved.lock().unwrap(), 0, "moved while it was stopped");

@@ -4,8 +4,8 @@ use plotter_motion::config::{Bound, ConfigError, Key, MachineConfig, Section};
 
 /// How drawings longer than the table are drawn: the table `[sheet]` of a machine's file.
 ///
-/// The defaults are a machine that moves no sheet. With the feature `serde`, and `toml` of plotter-motion,
-/// [`Machine::from_toml_with`](plotter_motion::Machine::from_toml_with) reads it beside the machine.
+/// The defaults are a machine that moves no sheet. With the feature `toml`,
+/// `plotter_motion::Machine::from_toml_with` reads it beside the machine.
 ///
 /// ```
 /// # use plotter_motion::{Machine, MachineConfig, config::Section};

@@ -15,7 +15,7 @@ mod chain_precision;
 mod golden_split;
 mod joints;
 mod judge;
-#[cfg(feature = "serde")]
+#[cfg(feature = "toml")]
 mod machine_section;
 mod prop_fold;
 mod prop_frame_transform;

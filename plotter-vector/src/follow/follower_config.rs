@@ -4,9 +4,8 @@ use plotter_motion::config::{Key, Section};
 
 /// A camera beside the tool, and the tool's width: the table `[follower]` of a machine's file.
 ///
-/// The defaults are a camera above the tool, which takes nothing away. With the feature `serde`, and `toml` of
-/// plotter-motion, [`Machine::from_toml_with`](plotter_motion::Machine::from_toml_with) reads it beside the
-/// machine.
+/// The defaults are a camera above the tool, which takes nothing away. With the feature `toml`,
+/// `plotter_motion::Machine::from_toml_with` reads it beside the machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",

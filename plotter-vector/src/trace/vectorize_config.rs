@@ -10,8 +10,7 @@ use plotter_motion::config::{FileName, Key, Section};
 
 /// How pictures become strokes for a machine: the table `[vectorize]` of its file.
 ///
-/// With the feature `serde`, and `toml` of plotter-motion,
-/// [`Machine::from_toml_with`](plotter_motion::Machine::from_toml_with) reads it beside the machine.
+/// With the feature `toml`, `plotter_motion::Machine::from_toml_with` reads it beside the machine.
 ///
 /// ```
 /// use plotter_vector::{Mode, trace::VectorizeConfig};

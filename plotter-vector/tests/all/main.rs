@@ -33,7 +33,7 @@ mod layers;
 mod level_lines;
 mod line_ends;
 mod lines;
-#[cfg(feature = "serde")]
+#[cfg(feature = "toml")]
 mod machine_sections;
 #[cfg(feature = "svg-text")]
 mod made_font;
