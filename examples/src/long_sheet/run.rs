@@ -65,7 +65,7 @@ impl LongSheetMachine {
             frame_mm: sheet.frame_mm,
         };
         let strip = ReferenceLines::strip16_on(&field);
-        let search = SearchSettings { fast_mm_s: sheet.sensing_mm_s, ..SearchSettings::default() };
+        let search = SearchSettings::default().with_fast_mm_s(sheet.sensing_mm_s);
         // Marks are drawn with the frame before, and looked for after it has been moved.
         let beyond_mm = steppers.homing.pull_off_mm;
         let y_marks_mm =
@@ -88,7 +88,7 @@ impl LongSheetMachine {
                 window_mm: sheet.cut_window_mm,
                 clear_mm: sheet.cut_clear_mm,
             },
-            sheet: SheetSettings { field, anchor_mm: sheet.anchor_mm, ..SheetSettings::default() },
+            sheet: SheetSettings::default().with_field(field).with_anchor_mm(sheet.anchor_mm),
             strip,
             search,
             planner: PlannerSettings::of(machine),
@@ -106,11 +106,9 @@ impl LongSheetMachine {
     pub fn on_paper(self, edges_mm: [f64; 2], turn_rad: f64, seed: u64) -> Result<Self, String> {
         let Self { layout, sheet, beyond_mm, area, .. } = self;
         let Field { begin_mm, frame_mm, .. } = sheet.field;
-        let settings = PaperSettings {
-            reach_mm: [-beyond_mm, area.x + beyond_mm],
-            rows_mm: [begin_mm, begin_mm + frame_mm],
-            ..PaperSettings::default()
-        };
+        let settings = PaperSettings::default()
+            .with_reach_mm([-beyond_mm, area.x + beyond_mm])
+            .with_rows_mm([begin_mm, begin_mm + frame_mm]);
         let mut search = PaperSearch::new(settings);
         SensedPaper::new(edges_mm, turn_rad, seed).run(&mut search).map_err(|error| error.to_string())?;
         let paper = search.paper().map_err(|error| error.to_string())?;
@@ -118,7 +116,7 @@ impl LongSheetMachine {
             paper.field(paper.widest_mm().floor(), begin_mm, frame_mm).map_err(|error| error.to_string())?;
         Ok(Self {
             layout: FrameLayout { width_mm: field.width_mm, ..layout },
-            sheet: SheetSettings { field, ..sheet },
+            sheet: sheet.with_field(field),
             strip: ReferenceLines::strip16_on(&field),
             ..self
         })

@@ -39,6 +39,44 @@ pub struct SheetConfig {
 }
 
 impl SheetConfig {
+    /// The same with another [`SheetConfig::frame_mm`].
+    #[must_use]
+    pub const fn with_frame_mm(self, frame_mm: f64) -> Self {
+        Self { frame_mm, ..self }
+    }
+
+    /// The same with another [`SheetConfig::begin_mm`].
+    #[must_use]
+    pub const fn with_begin_mm(self, begin_mm: f64) -> Self {
+        Self { begin_mm, ..self }
+    }
+
+    /// The same with another [`SheetConfig::cut_window_mm`].
+    #[must_use]
+    pub const fn with_cut_window_mm(self, cut_window_mm: f64) -> Self {
+        Self { cut_window_mm, ..self }
+    }
+
+    /// The same with another [`SheetConfig::cut_clear_mm`].
+    #[must_use]
+    pub const fn with_cut_clear_mm(self, cut_clear_mm: f64) -> Self {
+        Self { cut_clear_mm, ..self }
+    }
+
+    /// The same with another [`SheetConfig::anchor_mm`].
+    #[must_use]
+    pub const fn with_anchor_mm(self, anchor_mm: f64) -> Self {
+        Self { anchor_mm, ..self }
+    }
+
+    /// The same with another [`SheetConfig::sensing_mm_s`].
+    #[must_use]
+    pub const fn with_sensing_mm_s(self, sensing_mm_s: f64) -> Self {
+        Self { sensing_mm_s, ..self }
+    }
+}
+
+impl SheetConfig {
     /// The documented textile plotter: frames of 950 mm on a table that takes 1000 mm of the paper's length.
     #[must_use]
     pub const fn textile_plotter() -> Self {
