@@ -147,7 +147,7 @@ fn without_edges_the_answers_are_compared_from_the_pulses() {
     let edges = EdgeSource::from_records(&without);
     assert_eq!(edges, EdgeSource::Pulses);
     let tolerance = Duration::from_millis(50);
-    let player = Player::new(PlayerSettings { edges, tolerance, ..PlayerSettings::default() });
+    let player = Player::new(PlayerSettings::default().with_edges(edges).with_tolerance(tolerance));
     match player.check(without, MachineController::new(&machine)) {
         Outcome::Equal(compared) => assert_eq!(compared.bytes, 9), // one answer to each target
         Outcome::FirstDifference(difference) => panic!("{difference}"),
