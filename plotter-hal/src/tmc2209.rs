@@ -159,6 +159,7 @@ impl Replies {
 /// How the coils are chopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum Chopper {
     /// By voltage, without noise. The load is measured in it alone.
     StealthChop,

@@ -13,7 +13,7 @@ fn graph(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("graph");
     group.sample_size(10);
     let vectorizer =
-        Vectorizer::from(Ours::default().with_order(Order { effort: OrderEffort::None, ..Order::default() }));
+        Vectorizer::from(Ours::default().with_order(Order::default().with_effort(OrderEffort::None)));
     for side_px in SIDES_PX {
         let ink = ink(side_px);
         group.throughput(Throughput::Elements(u64::from(side_px) * u64::from(side_px)));

@@ -13,8 +13,8 @@ use plotter_motion::{Machine, config::MachineKind};
 use plotter_vector::{
     Gray, PxPoint,
     follow::{
-        CameraSettings, Correction, End, FollowerConfig, Paper, SimulatedCamera, SimulatedTable, Step,
-        TableError, Tool, judge,
+        Correction, End, FollowerConfig, Paper, SimulatedCamera, SimulatedTable, Step, TableError, Tool,
+        judge,
     },
 };
 use std::path::{Path, PathBuf};
@@ -120,7 +120,7 @@ impl<'a> Course<'a> {
             Some(_) => Leader::area(&described, &beside, &machine)?,
             None => machine.area(),
         };
-        let camera = CameraSettings { seed: arguments.seed, ..*arguments.camera };
+        let camera = arguments.camera.with_seed(arguments.seed);
         let eyes = match (&arguments.from, sheet) {
             (None, Some(sheet)) => {
                 Eyes::Simulated(Box::new(SimulatedCamera::new(&Paper::of(&sheet.picture), camera)))

@@ -113,7 +113,7 @@ fn compare_at_the_published_greatest_error(picture: &[u8]) {
     for figure in figures.iter() {
         let published = DynamicThreshold::default().keep(figure);
         let tolerance_px = greatest_error_px(figure, &published);
-        let ours = Bounded { tolerance_px }.keep(figure);
+        let ours = Bounded::default().with_tolerance_px(tolerance_px).keep(figure);
         assert!(ours.len() <= published.len(), "at {:?}, {tolerance_px} px", figure[0]);
         assert!(greatest_error_px(figure, &ours) <= tolerance_px + ROUNDING_PX, "at {:?}", figure[0]);
     }

@@ -8,6 +8,7 @@ use plotter_motion::protocol::{HostSettings, Resume};
 
 /// What is spoken with the machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum LinkChoice {
     /// Frames, if the machine knows them, else digits. It is called when the drawing begins, at the origin.
     #[default]

@@ -125,6 +125,7 @@ impl PlotterSettings {
 
 /// Records of a log that tell the position of the motors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum CountedBy {
     /// The controller's answers on the serial line: the protocol `digits`.
     #[default]

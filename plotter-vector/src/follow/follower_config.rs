@@ -25,6 +25,32 @@ pub struct FollowerConfig {
     pub kerf_mm: f64,
 }
 
+impl FollowerConfig {
+    /// The same with another [`FollowerConfig::camera_x_mm`].
+    #[must_use]
+    pub const fn with_camera_x_mm(self, camera_x_mm: f64) -> Self {
+        Self { camera_x_mm, ..self }
+    }
+
+    /// The same with another [`FollowerConfig::camera_y_mm`].
+    #[must_use]
+    pub const fn with_camera_y_mm(self, camera_y_mm: f64) -> Self {
+        Self { camera_y_mm, ..self }
+    }
+
+    /// The same with another [`FollowerConfig::camera_turn_deg`].
+    #[must_use]
+    pub const fn with_camera_turn_deg(self, camera_turn_deg: f64) -> Self {
+        Self { camera_turn_deg, ..self }
+    }
+
+    /// The same with another [`FollowerConfig::kerf_mm`].
+    #[must_use]
+    pub const fn with_kerf_mm(self, kerf_mm: f64) -> Self {
+        Self { kerf_mm, ..self }
+    }
+}
+
 /// Keys of the table.
 static KEYS: [Key<FollowerConfig>; 4] = [
     Key::number(

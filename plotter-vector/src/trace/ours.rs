@@ -17,6 +17,7 @@ use crate::trace::bare_ink::BareInk;
 /// What of the ink is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
 pub enum Mode {
     /// A stroke down the middle of each line; what is far wider than the lines is outlined.
     #[default]
@@ -33,6 +34,7 @@ pub enum Mode {
 /// that are filled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
 pub enum Prefer {
     /// No stroke is added: fewest strokes, and what is bare by more than the tolerance is told by the errors.
     Strokes,

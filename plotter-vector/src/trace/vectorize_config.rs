@@ -58,6 +58,74 @@ pub struct VectorizeConfig {
     pub overlay: FileName,
 }
 
+impl VectorizeConfig {
+    /// The same with another [`VectorizeConfig::mode`].
+    #[must_use]
+    pub const fn with_mode(self, mode: Mode) -> Self {
+        Self { mode, ..self }
+    }
+
+    /// The same with another [`VectorizeConfig::max_error_px`].
+    #[must_use]
+    pub const fn with_max_error_px(self, max_error_px: f64) -> Self {
+        Self { max_error_px, ..self }
+    }
+
+    /// The same with another [`VectorizeConfig::pieces`].
+    #[must_use]
+    pub const fn with_pieces(self, pieces: Pieces) -> Self {
+        Self { pieces, ..self }
+    }
+
+    /// The same with another [`VectorizeConfig::threshold`].
+    #[must_use]
+    pub const fn with_threshold(self, threshold: ThresholdMethod) -> Self {
+        Self { threshold, ..self }
+    }
+
+    /// The same with another [`VectorizeConfig::pens`].
+    #[must_use]
+    pub const fn with_pens(self, pens: PensChoice) -> Self {
+        Self { pens, ..self }
+    }
+
+    /// The same with another [`VectorizeConfig::order`].
+    #[must_use]
+    pub const fn with_order(self, order: OrderEffort) -> Self {
+        Self { order, ..self }
+    }
+
+    /// The same with another [`VectorizeConfig::hatch_mm`].
+    #[must_use]
+    pub const fn with_hatch_mm(self, hatch_mm: f64) -> Self {
+        Self { hatch_mm, ..self }
+    }
+
+    /// The same with another [`VectorizeConfig::pen_mm`].
+    #[must_use]
+    pub const fn with_pen_mm(self, pen_mm: f64) -> Self {
+        Self { pen_mm, ..self }
+    }
+
+    /// The same with another [`VectorizeConfig::max_line_px`].
+    #[must_use]
+    pub const fn with_max_line_px(self, max_line_px: u32) -> Self {
+        Self { max_line_px, ..self }
+    }
+
+    /// The same with another [`VectorizeConfig::threads`].
+    #[must_use]
+    pub const fn with_threads(self, threads: u32) -> Self {
+        Self { threads, ..self }
+    }
+
+    /// The same with another [`VectorizeConfig::overlay`].
+    #[must_use]
+    pub const fn with_overlay(self, overlay: FileName) -> Self {
+        Self { overlay, ..self }
+    }
+}
+
 impl Default for VectorizeConfig {
     /// The middle of lines to half a pixel, one pen, everything else found from the picture.
     fn default() -> Self {

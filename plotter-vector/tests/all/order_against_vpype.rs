@@ -91,7 +91,7 @@ fn the_pen_travels_no_farther_than_by_vpypes_two_commands() {
         };
         let gray = decode(&picture).unwrap();
         let by = |effort| {
-            let order = Order { effort, ..Order::default() };
+            let order = Order::default().with_effort(effort);
             strokes_of(&Vectorizer::from(Ours::default().with_order(order)).vectorize(&gray).unwrap().drawing)
         };
         let (as_found, ours) = (by(OrderEffort::None), by(OrderEffort::Best));

@@ -41,7 +41,7 @@ fn sheet() -> Bitmap {
 }
 
 fn outlined(pen_px: f64) -> Ours {
-    let areas = Areas { style: AreaStyle::Outline, pen_px };
+    let areas = Areas::default().with_style(AreaStyle::Outline).with_pen_px(pen_px);
     Ours::default().with_mode(Mode::Outline).with_areas(areas)
 }
 
@@ -116,7 +116,7 @@ fn line_and_bar(bar_px: u32) -> Bitmap {
 #[test]
 fn a_bar_four_times_as_wide_as_the_lines_is_an_area_where_both_are_mixed() {
     let closed = |mode, bar_px| {
-        let areas = Areas { style: AreaStyle::Outline, pen_px: 1.0 };
+        let areas = Areas::default().with_style(AreaStyle::Outline).with_pen_px(1.0);
         let traced = Vectorizer::from(Ours::default().with_mode(mode).with_areas(areas))
             .trace(&line_and_bar(bar_px))
             .unwrap();
@@ -131,7 +131,7 @@ fn a_bar_four_times_as_wide_as_the_lines_is_an_area_where_both_are_mixed() {
 #[test]
 fn what_is_too_narrow_for_a_wide_pen_is_followed() {
     // Round a bar of 16 px a pen of 30 px finds no way inside; nothing of it is lost.
-    let areas = Areas { style: AreaStyle::Outline, pen_px: 30.0 };
+    let areas = Areas::default().with_style(AreaStyle::Outline).with_pen_px(30.0);
     let traced = Vectorizer::from(Ours::default().with_mode(Mode::Mixed).with_areas(areas))
         .trace(&line_and_bar(16))
         .unwrap();

@@ -27,7 +27,7 @@ const ROUNDING_PX: f64 = 1e-7;
 const CHORDS_PX: f64 = 1e-3;
 
 fn bounded(tolerance_px: f64) -> Bounded {
-    Bounded { tolerance_px }
+    Bounded::default().with_tolerance_px(tolerance_px)
 }
 
 /// The sites of a circle, about one a pixel, each off by up to so much in x and in y.
@@ -112,7 +112,7 @@ proptest! {
             let bulges = places.iter().map(|(.., bulge)| *bulge).collect();
             drawing.push_curve(*pen, Curve { vertices, bulges, ..Curve::default() });
         }
-        let order = Order { effort, merge_gap_px: 0.0, ..Order::default() };
+        let order = Order::default().with_effort(effort).with_merge_gap_px(0.0);
         let ordered = order.apply(&drawing);
         prop_assert_eq!(pieces(&unsplit(&ordered, &drawing)), pieces(&drawing));
         prop_assert!((ordered.pen_down_px() - drawing.pen_down_px()).abs() < 1e-6);

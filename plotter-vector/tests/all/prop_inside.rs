@@ -50,8 +50,8 @@ fn noise() -> impl Strategy<Value = Gray> {
 }
 
 fn vectorizers() -> impl Strategy<Value = Vectorizer> {
-    let hatch = Hatch { pitch_px: 2.0, angle_rad: 0.7, ..Hatch::default() };
-    let areas = Areas { style: AreaStyle::OutlineAndHatch(hatch), pen_px: 1.5 };
+    let hatch = Hatch::default().with_pitch_px(2.0).with_angle_rad(0.7);
+    let areas = Areas::default().with_style(AreaStyle::OutlineAndHatch(hatch)).with_pen_px(1.5);
     let hatched = Ours::default().with_mode(Mode::Mixed).with_max_line_px(3).with_areas(areas).into();
     let mode = prop::sample::select(vec![
         Vectorizer::default(),

@@ -125,7 +125,7 @@ proptest! {
         let ink = ink_of(&gray);
         let mode = [Mode::Centreline, Mode::Outline, Mode::Mixed][mode];
         let style = if hatched { AreaStyle::OutlineAndHatch(Hatch::default()) } else { AreaStyle::Outline };
-        let areas = Areas { style, pen_px: 2.0 };
+        let areas = Areas::default().with_style(style).with_pen_px(2.0);
         let ours = Ours::default().with_mode(mode).with_areas(areas).with_pieces(pieces);
         let whole = Vectorizer::from(ours.with_band_rows(u32::MAX));
         let expected = whole.trace(&ink).unwrap().drawing;
@@ -223,7 +223,7 @@ proptest! {
         let polarity = [Polarity::Minority, Polarity::DarkInk, Polarity::LightInk][polarity];
         let level = ThresholdMethod::Level;
         let method = [ThresholdMethod::Otsu, ThresholdMethod::Adaptive, level(0), level(128), level(255)][method];
-        let threshold = Threshold { polarity, method, ..Threshold::default() };
+        let threshold = Threshold::default().with_polarity(polarity).with_method(method);
         let vectorizer = Vectorizer::from(Ours::default().with_pieces(pieces).with_band_rows(64)).with_threshold(threshold);
         for black in [inverted(&black), black] {
             assert_as_whole(vectorizer, &levels_of(&black), &mut BitmapRows::new(&black));
@@ -268,7 +268,7 @@ fn the_worst_place_of_a_thin_line_is_the_one_that_is_reported() {
     let holes = [(67, 222), (75, 178), (42, 254), (143, 468), (134, 438), (197, 359), (18, 380)];
     let mut black = ink_of(&drawn(200, 500, 1.0, &[((187, 208), (101, 265))]));
     holes.iter().for_each(|&(x, y)| black.set(Pixel::new(x, y), (x + y) % 2 == 0));
-    let threshold = Threshold { polarity: Polarity::DarkInk, ..Threshold::default() };
+    let threshold = Threshold::default().with_polarity(Polarity::DarkInk);
     let vectorizer = Vectorizer::from(Ours::default().with_band_rows(64)).with_threshold(threshold);
     for black in [inverted(&black), black] {
         assert_as_whole(vectorizer, &levels_of(&black), &mut BitmapRows::new(&black));

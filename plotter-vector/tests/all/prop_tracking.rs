@@ -39,7 +39,7 @@ proptest! {
     #![proptest_config(cases(256))]
     #[test]
     fn every_ink_pixel_is_in_exactly_one_figure_once(ink in pictures(), min_run in 0_usize..20) {
-        let figures = OrderedTracking { min_run, ..OrderedTracking::default() }.track(&ink).unwrap();
+        let figures = OrderedTracking::default().with_min_run(min_run).track(&ink).unwrap();
         let mut all: Vec<Pixel> = ink.ink().collect();
         all.sort_unstable();
         prop_assert_eq!(sorted(&figures), all);

@@ -66,7 +66,7 @@ impl RowSource for Banner {
 }
 
 fn strokes(height: u32) -> Vec<Vec<PxPoint>> {
-    let order = Order { effort: OrderEffort::None, ..Order::default() };
+    let order = Order::default().with_effort(OrderEffort::None);
     let vectorizer = Vectorizer::from(Ours::default().with_order(order));
     let sheet = vectorizer.vectorize_rows(&mut Banner::new(height), &mut Progress::silent()).unwrap();
     assert_eq!(sheet.pen_px, Some(3));

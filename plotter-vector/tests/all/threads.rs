@@ -19,7 +19,7 @@ fn the_number_of_threads_changes_nothing() {
     let levels = (0..width * height).map(|i| level(i) as u8).collect();
     let gray = Gray::new(width, height, levels).unwrap();
     for method in [ThresholdMethod::Auto, ThresholdMethod::Otsu, ThresholdMethod::Adaptive] {
-        let threshold = Threshold { method, ..Threshold::default() };
+        let threshold = Threshold::default().with_method(method);
         let mut results = [1, 2, 3].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {

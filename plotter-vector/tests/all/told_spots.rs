@@ -81,7 +81,7 @@ fn squares() -> Bitmap {
 #[test]
 fn the_inside_of_an_area_that_is_outlined_is_told() {
     let traced = |style| {
-        let areas = Areas { style, pen_px: 2.5 };
+        let areas = Areas::default().with_style(style).with_pen_px(2.5);
         Vectorizer::from(Ours::default().with_areas(areas)).trace(&squares()).unwrap()
     };
     let outlined = traced(AreaStyle::Outline);
@@ -102,7 +102,7 @@ fn the_inside_of_an_area_that_is_outlined_is_told() {
     assert!(!errors(outlined).are_within(10.0), "however much is allowed");
     // Hatched without gaps nothing is left out, with gaps the ink between the lines is.
     let hatched =
-        |pitch_px| traced(AreaStyle::OutlineAndHatch(Hatch { pitch_px, ..Hatch::default() })).insides;
+        |pitch_px| traced(AreaStyle::OutlineAndHatch(Hatch::default().with_pitch_px(pitch_px))).insides;
     assert_eq!(hatched(2.5), Spots::default());
     let gaps = hatched(8.0);
     assert!(gaps.number > 20 && (4_000..9_000).contains(&gaps.pixels), "{gaps:?}");

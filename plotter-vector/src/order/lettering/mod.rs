@@ -72,6 +72,7 @@ const OPEN_BLOCKS: usize = 32;
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct Lettering {
     /// Height of the smallest letters, px.
     pub min_height_px: f64,
@@ -79,6 +80,26 @@ pub struct Lettering {
     pub max_height_px: f64,
     /// Widest space between neighbours of one line, in letter heights.
     pub max_gap_heights: f64,
+}
+
+impl Lettering {
+    /// The same with another [`Lettering::min_height_px`].
+    #[must_use]
+    pub const fn with_min_height_px(self, min_height_px: f64) -> Self {
+        Self { min_height_px, ..self }
+    }
+
+    /// The same with another [`Lettering::max_height_px`].
+    #[must_use]
+    pub const fn with_max_height_px(self, max_height_px: f64) -> Self {
+        Self { max_height_px, ..self }
+    }
+
+    /// The same with another [`Lettering::max_gap_heights`].
+    #[must_use]
+    pub const fn with_max_gap_heights(self, max_gap_heights: f64) -> Self {
+        Self { max_gap_heights, ..self }
+    }
 }
 
 impl Default for Lettering {
