@@ -52,6 +52,7 @@ impl Default for DriveConfig {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct DcConfig {
     /// How the motors are led along a line.
     pub control: ControlConfig,
@@ -72,6 +73,7 @@ pub struct DcConfig {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct OneBeltConfig {
     /// The motors, and how they are led.
     pub dc: DcConfig,
@@ -92,6 +94,7 @@ pub struct OneBeltConfig {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct SteppersConfig {
     /// How moves are planned.
     pub planner: PlannerConfig,

@@ -9,8 +9,8 @@ use core::fmt;
 ///
 /// ```
 /// # use plotter_motion::{Machine, MachineConfig, config::SerialConfig};
-/// let serial = SerialConfig { baud: 25, ..SerialConfig::default() };
-/// let refused = Machine::new(MachineConfig { serial, ..MachineConfig::default() }).unwrap_err();
+/// let serial = SerialConfig::default().with_baud(25);
+/// let refused = Machine::new(MachineConfig::default().with_serial(serial)).unwrap_err();
 /// assert_eq!(
 ///     refused.to_string(),
 ///     "serial.baud: 25 baud lies outside 300..=4000000 baud; the documented gantry uses 256000"

@@ -54,6 +54,7 @@ pub enum KnownMotors {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct BeltConfig {
     /// Where the pen is when the machine is switched on, to the right, mm.
     pub start_x_mm: f64,
@@ -103,6 +104,7 @@ impl Default for BeltConfig {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct PointToPointConfig {
     /// Error of an axis at which it gets no drive, mm.
     pub allowed_error_mm: f64,

@@ -16,7 +16,7 @@ use crate::plant::StepperSettings;
 /// ```
 /// # use plotter_motion::{Machine, MachineConfig, config::AreaConfig};
 /// let a3 = AreaConfig { width_mm: 420.0, height_mm: 297.0 };
-/// let machine = Machine::new(MachineConfig { area: a3, ..MachineConfig::default() })?;
+/// let machine = Machine::new(MachineConfig::default().with_area(a3))?;
 /// assert_eq!(machine.config().area.width_mm, 420.0);
 /// # Ok::<(), plotter_motion::ConfigError>(())
 /// ```

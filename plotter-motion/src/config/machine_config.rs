@@ -27,6 +27,7 @@ use super::{DriveConfig, MachineName, TransmissionConfig};
     derive(serde::Serialize, serde::Deserialize),
     serde(try_from = "FileConfig", into = "FileConfig")
 )]
+#[non_exhaustive]
 pub struct MachineConfig {
     /// Version of this format: 1.
     pub schema: u32,
@@ -38,6 +39,32 @@ pub struct MachineConfig {
     pub serial: SerialConfig,
     /// Its motors, how they move the pen, and how they are led.
     pub drive: DriveConfig,
+}
+
+impl MachineConfig {
+    /// The same with another [`MachineConfig::name`].
+    #[must_use]
+    pub const fn with_name(self, name: MachineName) -> Self {
+        Self { name, ..self }
+    }
+
+    /// The same with another [`MachineConfig::area`].
+    #[must_use]
+    pub const fn with_area(self, area: AreaConfig) -> Self {
+        Self { area, ..self }
+    }
+
+    /// The same with another [`MachineConfig::serial`].
+    #[must_use]
+    pub const fn with_serial(self, serial: SerialConfig) -> Self {
+        Self { serial, ..self }
+    }
+
+    /// The same with another [`MachineConfig::drive`].
+    #[must_use]
+    pub const fn with_drive(self, drive: DriveConfig) -> Self {
+        Self { drive, ..self }
+    }
 }
 
 /// The reachable area: a rectangle from the origin.
@@ -61,6 +88,7 @@ pub struct AreaConfig {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct SerialConfig {
     /// Bits a second.
     pub baud: u32,
@@ -68,6 +96,26 @@ pub struct SerialConfig {
     pub byte_gap_ms: f64,
     /// A silence inside a target after which the controller drops what it has of it, ms.
     pub resync_gap_ms: f64,
+}
+
+impl SerialConfig {
+    /// The same with another [`SerialConfig::baud`].
+    #[must_use]
+    pub const fn with_baud(self, baud: u32) -> Self {
+        Self { baud, ..self }
+    }
+
+    /// The same with another [`SerialConfig::byte_gap_ms`].
+    #[must_use]
+    pub const fn with_byte_gap_ms(self, byte_gap_ms: f64) -> Self {
+        Self { byte_gap_ms, ..self }
+    }
+
+    /// The same with another [`SerialConfig::resync_gap_ms`].
+    #[must_use]
+    pub const fn with_resync_gap_ms(self, resync_gap_ms: f64) -> Self {
+        Self { resync_gap_ms, ..self }
+    }
 }
 
 /// Controllers of the motors.
@@ -89,6 +137,7 @@ pub enum ControllerChoice {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct ControlConfig {
     /// The controller.
     pub controller: ControllerChoice,
@@ -131,6 +180,7 @@ pub struct PublishedConfig {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct ContouringConfig {
     /// Cruising speed along a line, mm/s.
     pub feed_mm_s: f64,
@@ -166,6 +216,9 @@ pub struct SyncStopConfig {
 }
 
 /// An axis of a DC motor, or one of the two motors of a belt.
+///
+/// It and its parts are written out as constants of a firmware (feature `build`), so they can be made field by
+/// field outside of this crate, too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",

@@ -24,6 +24,7 @@ pub(super) enum DriveChoice {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct StepperConfig {
     /// Pulses (microsteps) to the millimetre.
     pub steps_per_mm: f64,
@@ -92,6 +93,7 @@ pub enum JerkChoice {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct PlannerConfig {
     /// Whether corners are passed exactly or rounded.
     pub mode: PathChoice,
@@ -173,6 +175,7 @@ pub enum PenLift {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct PenConfig {
     /// Angle of the servo with the pen up, degrees.
     pub up_deg: f64,
@@ -201,6 +204,7 @@ impl Default for PenConfig {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct LaserConfig {
     /// Whether there is one, and it may be switched on.
     pub enabled: bool,
@@ -222,6 +226,7 @@ impl Default for LaserConfig {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct HomingConfig {
     /// Greatest rate where the way is known, pulses/s.
     pub fast_rate_hz: f64,

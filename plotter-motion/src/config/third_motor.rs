@@ -10,6 +10,7 @@ use super::rules::{MachineKey, number};
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct ZConfig {
     /// Whether there is one.
     pub enabled: bool,
@@ -72,6 +73,7 @@ pub enum SecondMotorChoice {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct SecondMotorConfig {
     /// The axis with two motors.
     pub axis: SecondMotorChoice,
