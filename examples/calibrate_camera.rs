@@ -73,8 +73,7 @@ fn calibrate(arguments: &Arguments) -> Result<(), String> {
             };
             let strokes: Vec<_> = places.flat_map(lines).collect();
             let paper = Paper::drawn(400, 400, &strokes).map_err(|error| error.to_string())?;
-            let settings =
-                CameraSettings { lens: Lens { barrel: arguments.barrel }, ..CameraSettings::default() };
+            let settings = CameraSettings::default().with_lens(Lens { barrel: arguments.barrel });
             (
                 SimulatedCamera::new(&paper, settings).window(PxPoint::new(203.0, 196.0)),
                 "a simulated camera".into(),

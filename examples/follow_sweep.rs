@@ -161,14 +161,12 @@ fn followed(method: Method, condition: &Condition, seed: u64) -> Result<Outcome,
     let lines = lines(condition);
     let strokes: Vec<_> = lines.iter().map(|line| (line.clone(), condition.line_px)).collect();
     let paper = Paper::drawn(SIZE_PX.0, SIZE_PX.1, &strokes).map_err(|error| error.to_string())?;
-    let settings = CameraSettings {
-        width_px: WINDOW_PX,
-        height_px: WINDOW_PX,
-        blur_px: condition.blur_px,
-        noise_levels: condition.noise_levels,
-        seed,
-        ..CameraSettings::default()
-    };
+    let settings = CameraSettings::default()
+        .with_width_px(WINDOW_PX)
+        .with_height_px(WINDOW_PX)
+        .with_blur_px(condition.blur_px)
+        .with_noise_levels(condition.noise_levels)
+        .with_seed(seed);
     let mut camera = SimulatedCamera::new(&paper, settings);
     let start = lines.first().and_then(|line| line.first()).copied().unwrap_or_default();
     let error = TableError { random_px: condition.table_px, play_px: condition.play_px, seed };
@@ -177,7 +175,7 @@ fn followed(method: Method, condition: &Condition, seed: u64) -> Result<Outcome,
     let area = Some([PxPoint::new(0.0, 0.0), far]);
     let mut complete = false;
     if method == Method::Ours {
-        let settings = MappingSettings { area, max_windows: MOST_WINDOWS, ..MappingSettings::default() };
+        let settings = MappingSettings::default().with_area(area).with_max_windows(MOST_WINDOWS);
         let mut follower = MappingFollower::new(settings);
         loop {
             match follower.observe(&camera.window(table.place()), table.commanded()) {
@@ -192,11 +190,9 @@ fn followed(method: Method, condition: &Condition, seed: u64) -> Result<Outcome,
     } else {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 20")]
         let thinnest_px = condition.line_px as u32;
-        let settings = PublishedSettings {
-            area,
-            only_connected: method == Method::Connected,
-            ..PublishedSettings::for_lines(thinnest_px)
-        };
+        let settings = PublishedSettings::for_lines(thinnest_px)
+            .with_area(area)
+            .with_only_connected(method == Method::Connected);
         let mut follower = PublishedFollower::new(settings);
         let length = |lines: &[Vec<PxPoint>]| -> f64 {
             lines.iter().flat_map(|line| line.windows(2)).map(|pair| pair[0].distance(pair[1])).sum()

@@ -2,6 +2,7 @@
 //!
 //! `cargo run --release --example my_controller -- --html target/mine.html` draws the pictures too; `--help` says what else.
 
+use plotter_motion::config::DcConfig;
 use plotter_motion::control::{AxisController, AxisState, ShaftModel, TwoAxes};
 use plotter_motion::testbed::Entry;
 use plotter_motion::{Duty, config::AxisConfig};
@@ -36,7 +37,7 @@ impl AxisController for Mine {
 
 fn main() -> ExitCode {
     plotter_examples::compare::compare_controllers(vec![Entry::contour("mine", |machine| {
-        let config = machine.config();
-        TwoAxes { x: Mine::of(&config.x), y: Mine::of(&config.y) }
+        let dc = DcConfig::of(machine);
+        TwoAxes { x: Mine::of(&dc.x), y: Mine::of(&dc.y) }
     })])
 }

@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use plotter_vector::{Algorithm, Vectorizer, decode, stroke::Pieces};
+use plotter_vector::{Ours, Vectorizer, decode, stroke::Pieces};
 
 /// What the ends of arcs and cubic curves may lie beyond the rim of the outermost pixels.
 const ROUNDING_PX: f64 = 1e-6;
@@ -13,9 +13,9 @@ fuzz_target!(|bytes: &[u8]| {
     }
     let Ok(gray) = decode(bytes) else { return };
     let (width, height) = (f64::from(gray.width()), f64::from(gray.height()));
-    let published = Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() };
-    let arcs = Vectorizer { pieces: Pieces::Arcs, ..Vectorizer::default() };
-    let curves = Vectorizer { pieces: Pieces::Cubics, ..Vectorizer::default() };
+    let published = Vectorizer::published();
+    let arcs = Vectorizer::from(Ours::default().with_pieces(Pieces::Arcs));
+    let curves = Vectorizer::from(Ours::default().with_pieces(Pieces::Cubics));
     for vectorizer in [Vectorizer::default(), arcs, curves, published] {
         let traced = vectorizer.vectorize(&gray).expect("a small picture has few figures");
         for at in traced.drawing.strokes().flatten() {

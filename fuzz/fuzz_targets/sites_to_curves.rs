@@ -22,7 +22,7 @@ fuzz_target!(|bytes: &[u8]| {
         if pair == [0, 0] { PxPoint::new(f64::NAN, 0.0) } else { at }
     };
     let sites: Vec<PxPoint> = steps.chunks(2).take(MOST_SITES).map(step).collect();
-    let bounded = Bounded { tolerance_px };
+    let bounded = Bounded::default().with_tolerance_px(tolerance_px);
     let straight = bounded.polyline(&sites, closed);
     for curve in [bounded.arcs(&sites, closed), bounded.cubics(&sites, closed)] {
         assert!(curve.vertices.len() <= straight.len().max(3), "{curve:?}");

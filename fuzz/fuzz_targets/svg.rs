@@ -12,15 +12,13 @@ fuzz_target!(|bytes: &[u8]| {
     // The first byte chooses how the others are read.
     let Some((how, bytes)) = bytes.split_first() else { return };
     let pens = [SvgPens::ByColour, SvgPens::ByLayer, SvgPens::ByOrder, SvgPens::One];
-    let options = SvgOptions {
-        arcs: how & 1 != 0,
-        keeps_clipped: how & 2 != 0,
-        occludes: how & 4 != 0,
-        pens: pens[usize::from(how >> 3) % pens.len()],
-        paper: None,
-        max_vertices: MOST_VERTICES,
-        ..SvgOptions::default()
-    };
+    let options = SvgOptions::default()
+        .with_arcs(how & 1 != 0)
+        .with_keeps_clipped(how & 2 != 0)
+        .with_occludes(how & 4 != 0)
+        .with_pens(pens[usize::from(how >> 3) % pens.len()])
+        .with_paper(None)
+        .with_max_vertices(MOST_VERTICES);
     match read_svg(bytes, &options) {
         Ok(read) => {
             assert!(read.drawing.vertices() <= MOST_VERTICES);

@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let clock = time.clock.clone();
     // The servo's pulse: a period of 20,000 us, its width in whole microseconds.
     let pwm = Pwm { clock: clock.clone(), name: "servo", full: 20_000, duty: None, least_change: 1 };
-    let pen = PenServo::new(pwm, PenServoSettings { lowering_deg_s: 600.0, ..PenServoSettings::default() })?;
+    let pen = PenServo::new(pwm, PenServoSettings::default().with_lowering_deg_s(600.0))?;
     let settings = StepperPlotterSettings {
         dialect: Dialect::Grbl,
         pen_settle: pen.lowering_time(), // the controller waits for as long as the pen takes

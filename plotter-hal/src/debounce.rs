@@ -23,10 +23,11 @@ use embedded_hal::digital::{InputPin, PinState};
 /// # use core::time::Duration;
 /// # use embedded_hal::digital::PinState;
 /// # use plotter_hal::SwitchSettings;
-/// let normally_open = SwitchSettings { pressed_at: PinState::Low, ..SwitchSettings::default() };
+/// let normally_open = SwitchSettings::default().with_pressed_at(PinState::Low);
 /// assert_eq!(normally_open.release_after, Duration::from_millis(20));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct SwitchSettings {
     /// Level of the pin while the switch is pressed. A normally closed switch from the pin to ground, with a
     /// pull-up, shows [`PinState::High`] then, and so does a broken wire; a normally open one shows
@@ -36,6 +37,26 @@ pub struct SwitchSettings {
     pub press_after: Duration,
     /// For how long it must show without a break that it is not, before that is believed.
     pub release_after: Duration,
+}
+
+impl SwitchSettings {
+    /// The same with another [`SwitchSettings::press_after`].
+    #[must_use]
+    pub const fn with_press_after(self, press_after: Duration) -> Self {
+        Self { press_after, ..self }
+    }
+
+    /// The same with another [`SwitchSettings::pressed_at`].
+    #[must_use]
+    pub const fn with_pressed_at(self, pressed_at: PinState) -> Self {
+        Self { pressed_at, ..self }
+    }
+
+    /// The same with another [`SwitchSettings::release_after`].
+    #[must_use]
+    pub const fn with_release_after(self, release_after: Duration) -> Self {
+        Self { release_after, ..self }
+    }
 }
 
 impl Default for SwitchSettings {

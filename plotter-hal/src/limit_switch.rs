@@ -140,7 +140,7 @@ crate::which_pin::formats_as_shown!(<Pin: digital::Error> Error<Pin>);
 /// # use embedded_hal_mock::eh1::digital::{Mock as Pin, State::{High, Low}, Transaction as Read};
 /// # use plotter_hal::{LimitSwitch, LimitSwitchGroup, SwitchSettings};
 /// # use plotter_motion::{Demand, Duty, SafetyGate};
-/// let settings = SwitchSettings { release_after: Duration::ZERO, ..SwitchSettings::default() };
+/// let settings = SwitchSettings::default().with_release_after(Duration::ZERO);
 /// let switch = |level| LimitSwitch::new(Pin::new(&[Read::get(level)]), settings);
 /// let mut switches =
 ///     LimitSwitchGroup { x_min: switch(Low), x_max: switch(High), y_min: switch(Low), y_max: switch(Low) };

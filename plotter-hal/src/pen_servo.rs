@@ -23,6 +23,7 @@ use core::time::Duration;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::pwm::{self, SetDutyCycle};
 use plotter_motion::Machine;
+use plotter_motion::config::SteppersConfig;
 
 /// A measured point of a servo: pulse width and angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,15 +39,14 @@ pub struct ServoPoint {
 /// ```
 /// # use plotter_hal::{PenServoSettings, ServoPoint};
 /// // One whose pulses of 0.9 and 2.1 ms were found to be 45 and 135 degrees, and that lays its pen down gently.
-/// let settings = PenServoSettings {
-///     calibration: [ServoPoint { deg: 45.0, pulse_us: 900.0 }, ServoPoint { deg: 135.0, pulse_us: 2100.0 }],
-///     up_deg: 120.0,
-///     lowering_deg_s: 100.0,
-///     ..PenServoSettings::default()
-/// };
+/// let settings = PenServoSettings::default()
+///     .with_calibration([ServoPoint { deg: 45.0, pulse_us: 900.0 }, ServoPoint { deg: 135.0, pulse_us: 2100.0 }])
+///     .with_up_deg(120.0)
+///     .with_lowering_deg_s(100.0);
 /// assert_eq!(settings.down_deg, 90.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PenServoSettings {
     /// Two angles, at least 10 degrees apart, and their pulses of 400 to 2600 us. It is never turned beyond
     /// them.
@@ -63,6 +63,44 @@ pub struct PenServoSettings {
     /// From the last change of the pulse until the pen is taken to stand still. The last pulse may begin a
     /// frame later.
     pub settle: Duration,
+}
+
+impl PenServoSettings {
+    /// The same with another [`PenServoSettings::calibration`].
+    #[must_use]
+    pub const fn with_calibration(self, calibration: [ServoPoint; 2]) -> Self {
+        Self { calibration, ..self }
+    }
+
+    /// The same with another [`PenServoSettings::down_deg`].
+    #[must_use]
+    pub const fn with_down_deg(self, down_deg: f32) -> Self {
+        Self { down_deg, ..self }
+    }
+
+    /// The same with another [`PenServoSettings::frame_us`].
+    #[must_use]
+    pub const fn with_frame_us(self, frame_us: u32) -> Self {
+        Self { frame_us, ..self }
+    }
+
+    /// The same with another [`PenServoSettings::lowering_deg_s`].
+    #[must_use]
+    pub const fn with_lowering_deg_s(self, lowering_deg_s: f32) -> Self {
+        Self { lowering_deg_s, ..self }
+    }
+
+    /// The same with another [`PenServoSettings::settle`].
+    #[must_use]
+    pub const fn with_settle(self, settle: Duration) -> Self {
+        Self { settle, ..self }
+    }
+
+    /// The same with another [`PenServoSettings::up_deg`].
+    #[must_use]
+    pub const fn with_up_deg(self, up_deg: f32) -> Self {
+        Self { up_deg, ..self }
+    }
 }
 
 impl Default for PenServoSettings {
@@ -110,7 +148,7 @@ impl PenServoSettings {
     /// ```
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
-        let pen = &machine.config().pen;
+        let pen = &SteppersConfig::of(machine).pen;
         #[expect(clippy::cast_possible_truncation, reason = "0 to 270 degrees")]
         let deg = |deg: f64| deg as f32;
         Self {

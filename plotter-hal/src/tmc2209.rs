@@ -159,6 +159,7 @@ impl Replies {
 /// How the coils are chopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum Chopper {
     /// By voltage, without noise. The load is measured in it alone.
     StealthChop,
@@ -170,11 +171,12 @@ pub enum Chopper {
 ///
 /// ```
 /// # use plotter_hal::tmc2209::Settings;
-/// let settings = Settings { run_ma: 800, hold_ma: 400, microsteps: 32, ..Settings::default() };
+/// let settings = Settings::default().with_run_ma(800).with_hold_ma(400).with_microsteps(32);
 /// assert_eq!(settings.sense_mohm, 110);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub struct Settings {
     /// Current while it steps, RMS, mA: that of the motor's data sheet, over the root of 2 if it is a peak
     /// there.
@@ -194,6 +196,56 @@ pub struct Settings {
     pub stall_threshold: u8,
     /// Steps/s from which on a stall is told.
     pub stall_from_hz: u32,
+}
+
+impl Settings {
+    /// The same with another [`Settings::chopper`].
+    #[must_use]
+    pub const fn with_chopper(self, chopper: Chopper) -> Self {
+        Self { chopper, ..self }
+    }
+
+    /// The same with another [`Settings::hold_ma`].
+    #[must_use]
+    pub const fn with_hold_ma(self, hold_ma: u16) -> Self {
+        Self { hold_ma, ..self }
+    }
+
+    /// The same with another [`Settings::interpolates`].
+    #[must_use]
+    pub const fn with_interpolates(self, interpolates: bool) -> Self {
+        Self { interpolates, ..self }
+    }
+
+    /// The same with another [`Settings::microsteps`].
+    #[must_use]
+    pub const fn with_microsteps(self, microsteps: u16) -> Self {
+        Self { microsteps, ..self }
+    }
+
+    /// The same with another [`Settings::run_ma`].
+    #[must_use]
+    pub const fn with_run_ma(self, run_ma: u16) -> Self {
+        Self { run_ma, ..self }
+    }
+
+    /// The same with another [`Settings::sense_mohm`].
+    #[must_use]
+    pub const fn with_sense_mohm(self, sense_mohm: u16) -> Self {
+        Self { sense_mohm, ..self }
+    }
+
+    /// The same with another [`Settings::stall_from_hz`].
+    #[must_use]
+    pub const fn with_stall_from_hz(self, stall_from_hz: u32) -> Self {
+        Self { stall_from_hz, ..self }
+    }
+
+    /// The same with another [`Settings::stall_threshold`].
+    #[must_use]
+    pub const fn with_stall_threshold(self, stall_threshold: u8) -> Self {
+        Self { stall_threshold, ..self }
+    }
 }
 
 impl Default for Settings {
@@ -334,7 +386,7 @@ impl core::error::Error for SettingsError {}
 /// use plotter_hal::tmc2209::{Register, Settings, Tmc2209};
 ///
 /// let mut chip = Tmc2209::new(port, 0);
-/// chip.configure(&Settings { run_ma: 800, ..Settings::default() }, &mut delay)?; // before the motor is started
+/// chip.configure(&Settings::default().with_run_ma(800), &mut delay)?; // before the motor is started
 /// assert_eq!(chip.read(Register::Ifcnt, &mut delay)?, 5); // five writes were taken
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -15,6 +15,7 @@
 //! carriage moves fast for as long as the axis is known to go on, and slowly after that. Source: Dounaev and
 //! Phan, "X-Y Plotter Project", section 2.2.3.3.
 
+use crate::config::SteppersConfig;
 use crate::decimal_text::{Plain, Whole};
 use crate::{Axis, Direction, LimitSwitches, Machine, StepPair, config::StepperConfig};
 use core::fmt;
@@ -72,10 +73,10 @@ impl HomingAxis {
     /// ```
     #[must_use]
     pub fn of(machine: &Machine, axis: Axis) -> Self {
-        let config = machine.config();
+        let config = SteppersConfig::of(machine);
         let StepperConfig { steps_per_mm, start_rate_hz, .. } = match axis {
-            Axis::X => config.x.stepper,
-            Axis::Y => config.y.stepper,
+            Axis::X => config.x,
+            Axis::Y => config.y,
         };
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
         let whole = |value: f64| value as u32;

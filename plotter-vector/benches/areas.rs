@@ -37,7 +37,8 @@ fn areas(criterion: &mut Criterion) {
         let thick = split_by_width(&ink, 24).thick;
         let count = || Outlines::new(&thick).map(|path| path.cracks()).sum::<usize>();
         group.bench_function(format!("outlines, {name}"), |bench| bench.iter(count));
-        let hatched = Areas { style: AreaStyle::OutlineAndHatch(Hatch::default()), pen_px: 8.0 };
+        let hatched =
+            Areas::default().with_style(AreaStyle::OutlineAndHatch(Hatch::default())).with_pen_px(8.0);
         let count = || hatched.paths(&thick).unwrap().map(|path| path.sites.len()).sum::<usize>();
         group.bench_function(format!("outline and hatch, {name}"), |bench| bench.iter(count));
     }

@@ -7,15 +7,13 @@ mod drawn_sheet;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use drawn_sheet::{SIDES_PX, ink};
-use plotter_vector::{Order, Progress, Vectorizer, order::OrderEffort, picture::BitmapRows};
+use plotter_vector::{Order, Ours, Progress, Vectorizer, order::OrderEffort, picture::BitmapRows};
 
 fn graph(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("graph");
     group.sample_size(10);
-    let vectorizer = Vectorizer {
-        order: Order { effort: OrderEffort::None, ..Order::default() },
-        ..Vectorizer::default()
-    };
+    let vectorizer =
+        Vectorizer::from(Ours::default().with_order(Order::default().with_effort(OrderEffort::None)));
     for side_px in SIDES_PX {
         let ink = ink(side_px);
         group.throughput(Throughput::Elements(u64::from(side_px) * u64::from(side_px)));

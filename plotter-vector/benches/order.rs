@@ -36,7 +36,7 @@ fn order(criterion: &mut Criterion) {
         for effort in [OrderEffort::Fast, OrderEffort::Best] {
             let name = format!("{effort:?}");
             group.bench_with_input(BenchmarkId::new(name, count), &drawing, |bencher, drawing| {
-                bencher.iter(|| Order { effort, ..Order::default() }.apply(drawing));
+                bencher.iter(|| Order::default().with_effort(effort).apply(drawing));
             });
         }
         group.bench_with_input(BenchmarkId::new("Lettering", count), &drawing, |bencher, drawing| {

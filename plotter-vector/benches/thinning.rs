@@ -53,7 +53,7 @@ fn thinning(criterion: &mut Criterion) {
         let ink = sheet(width, height);
         group.throughput(Throughput::Elements(u64::from(width) * u64::from(height)));
         for method in [ThinningMethod::GuoHall, ThinningMethod::ZhangSuen] {
-            let thinning = Thinning { method, ..Thinning::default() };
+            let thinning = Thinning::default().with_method(method);
             let name = BenchmarkId::new(format!("{method:?}"), format!("{width}x{height}"));
             group.bench_with_input(name, &ink, |bencher, ink| {
                 bencher.iter_batched_ref(

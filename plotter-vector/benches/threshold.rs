@@ -48,7 +48,7 @@ fn stages(criterion: &mut Criterion) {
             black_box(histogram.otsu(LEAST_CONTRAST));
         });
         for method in [ThresholdMethod::Otsu, ThresholdMethod::Adaptive] {
-            let threshold = Threshold { method, ..Threshold::default() };
+            let threshold = Threshold::default().with_method(method);
             stage(&format!("{method}, whole picture"), &mut || drop(black_box(threshold.apply(&gray))));
         }
         let (ink, _) = Threshold::default().apply(&gray);

@@ -29,5 +29,5 @@ pub use report::ErrorReport;
 pub use stroke::{Curve, Drawing, Scale};
 #[cfg(feature = "svg-in")]
 pub use svg_in::{SvgOptions, read_svg};
-pub use trace::{Algorithm, Mode, Prefer, Progress, TracedSheet, VectorizeError, Vectorized, Vectorizer};
+pub use trace::{Mode, Ours, Prefer, Progress, TracedSheet, VectorizeError, Vectorized, Vectorizer};
 pub use write::{gcode, hpgl, svg};

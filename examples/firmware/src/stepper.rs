@@ -19,8 +19,7 @@ pub const BUTTONS_KNOWN: Duration = Duration::from_millis(25);
 
 /// The servo of the pen, looked at by the compiler: one that cannot be right does not get this far.
 pub const PEN: CheckedPenServo =
-    match (PenServoSettings { settle: PLOTTER.pen_settle, ..PenServoSettings::DEFAULT }).checked(SERVO_STEPS)
-    {
+    match PenServoSettings::DEFAULT.with_settle(PLOTTER.pen_settle).checked(SERVO_STEPS) {
         Ok(checked) => checked,
         Err(_) => panic!("no servo can be driven with them"),
     };

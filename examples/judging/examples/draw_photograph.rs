@@ -15,7 +15,7 @@ use image::{RgbImage, imageops};
 use plotter_examples::shared::{print, run};
 use plotter_judging::degraded::{Drawn, Kind, Strength, drawing};
 use plotter_vector::picture::SheetQuad;
-use plotter_vector::{Drawing, Prefer, Vectorizer, decode};
+use plotter_vector::{Drawing, Ours, Prefer, Vectorizer, decode};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use tiny_skia::{Color, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Stroke, Transform};
@@ -62,7 +62,7 @@ fn draw(file: Option<PathBuf>) -> Result<(), String> {
         .straightened(quad.proportion(gray.width(), gray.height()))
         .ok_or("the sheet is seen from its edge")?
         .gray(&gray);
-    let vectorizer = Vectorizer { prefer: Prefer::Strokes, ..Vectorizer::default() };
+    let vectorizer = Vectorizer::from(Ours::default().with_prefer(Prefer::Strokes));
     let found = vectorizer.vectorize(&sheet).map_err(|error| error.to_string())?.drawing;
 
     let photo = image::load_from_memory(&photograph.file).map_err(|error| error.to_string())?;

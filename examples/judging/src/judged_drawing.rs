@@ -39,7 +39,7 @@ impl JudgedDrawing {
     /// What is wrong with the file.
     pub fn from_svg(bytes: &[u8], (width_px, height_px): (u32, u32)) -> Result<Self, String> {
         let read = |tolerance_mm: f64| {
-            let options = SvgOptions { tolerance_mm, ..SvgOptions::default() };
+            let options = SvgOptions::default().with_tolerance_mm(tolerance_mm);
             read_svg(bytes, &options).map_err(|error| error.to_string())
         };
         // The size of a pixel is known when the file has been read.

@@ -2,14 +2,14 @@
 
 use super::command::CompareCommand;
 use super::page::{Page, Trace};
-use crate::shared::{WorkShown, at, fit_drawing, lost_ink, read_file, vectorized, vectorizer, write_file};
+use crate::shared::{WorkShown, at, fit_drawing, lost_ink, read_file, vectorized, write_file};
 use plotter_motion::{
     Machine, PlotOp,
     config::MachineKind,
     hpgl,
     testbed::{Drawing, Entry, Ranking, Score, TestBed, TestBedSettings},
 };
-use plotter_vector::{FileRows, picture::RowSource as _};
+use plotter_vector::{FileRows, picture::RowSource as _, trace::VectorizeConfig};
 use rayon::prelude::*;
 use serde_json::json;
 use std::fmt::Write as _;
@@ -142,7 +142,7 @@ fn plants(args: &CompareCommand) -> Result<Vec<Plant>, String> {
 }
 
 pub(super) fn plant(args: &CompareCommand, path: &Path, text: &str) -> Result<Plant, String> {
-    let machine = Machine::from_toml(text).map_err(|error| at(path, &error))?;
+    let (machine, vectorize) = Machine::from_toml_with(text).map_err(|error| at(path, &error))?;
     machine.require(MachineKind::Gantry, "the contest of controllers").map_err(|error| at(path, &error))?;
     let settings = TestBedSettings { wrong_share: args.wrong, ..TestBedSettings::default() };
     let bed = TestBed::new(&machine, settings).map_err(|error| {
@@ -150,12 +150,17 @@ pub(super) fn plant(args: &CompareCommand, path: &Path, text: &str) -> Result<Pl
     })?;
     let mut drawings = Drawing::star(&bed);
     if let Some(path) = &args.drawing {
-        drawings.push(drawing(args, path, &bed)?);
+        drawings.push(drawing(args, path, &bed, &vectorize)?);
     }
     Ok(Plant { name: machine.config().name.as_str().to_owned(), bed, drawings })
 }
 
-pub(super) fn drawing(args: &CompareCommand, path: &Path, bed: &TestBed) -> Result<Drawing, String> {
+pub(super) fn drawing(
+    args: &CompareCommand,
+    path: &Path,
+    bed: &TestBed,
+    vectorize: &VectorizeConfig,
+) -> Result<Drawing, String> {
     let is_builtin = path.as_os_str() == "builtin";
     let bytes = if is_builtin { include_bytes!("../../data/flag.png").to_vec() } else { read_file(path)? };
     let is_hpgl = path
@@ -163,7 +168,7 @@ pub(super) fn drawing(args: &CompareCommand, path: &Path, bed: &TestBed) -> Resu
         .is_some_and(|ending| ["plt", "hpgl"].iter().any(|known| ending.eq_ignore_ascii_case(known)));
     let name =
         if is_builtin { "flag".into() } else { path.file_stem().unwrap_or_default().to_string_lossy() };
-    let text = if is_hpgl { bytes } else { traced(args, path, &bytes, bed)?.into_bytes() };
+    let text = if is_hpgl { bytes } else { traced(args, path, &bytes, bed, vectorize)?.into_bytes() };
     let ops: Vec<PlotOp> =
         hpgl::plot_ops(text.as_slice()).collect::<Result<_, _>>().map_err(|error| at(path, &error))?;
     // A name stands in a table and in CSV.
@@ -172,11 +177,16 @@ pub(super) fn drawing(args: &CompareCommand, path: &Path, bed: &TestBed) -> Resu
 }
 
 /// A picture as HPGL, as the example `plot` makes it with ours on this machine.
-fn traced(args: &CompareCommand, path: &Path, bytes: &[u8], bed: &TestBed) -> Result<String, String> {
+fn traced(
+    args: &CompareCommand,
+    path: &Path,
+    bytes: &[u8],
+    bed: &TestBed,
+    vectorize: &VectorizeConfig,
+) -> Result<String, String> {
     let scan = FileRows::new(Cursor::new(bytes)).map_err(|error| at(path, &error))?;
     let scale = fit_drawing((scan.width(), scan.height()), bed.machine(), args.width_mm)?;
-    let vectorizer =
-        vectorizer(&bed.machine().config().vectorize, scale.mm_per_px()).map_err(|error| at(path, &error))?;
+    let vectorizer = vectorize.vectorizer(scale.mm_per_px()).map_err(|error| at(path, &error))?;
     let (traced, _) = vectorized(&vectorizer, bytes.to_vec(), 1).map_err(|error| at(path, &error))?;
     let errors = traced.errors.unwrap_or_default();
     lost_ink(&vectorizer, &errors, traced.pen_px, traced.look.is_some()).map_err(|error| at(path, &error))?;

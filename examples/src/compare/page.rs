@@ -3,6 +3,7 @@
 use super::contest::{Outcome, Plant, STAR, drawing_name};
 use crate::shared::escaped;
 use core::time::Duration;
+use plotter_motion::config::DcConfig;
 use plotter_motion::{
     Pen, PenMove, Point,
     testbed::{Drawing, Figures, Moment, Ranking, TestBed},
@@ -210,11 +211,11 @@ impl Page {
 fn phase_picture(drawings: &[Drawing], traces: &[Trace], bed: &TestBed) -> (String, f64) {
     const WIDTH: f64 = 480.0;
     const MARGIN: f64 = 50.0;
-    let config = bed.machine().config();
+    let dc = DcConfig::of(bed.machine());
     let on_sheet = |step: &PenMove| {
         Point::new(
-            f64::from(step.target.x) / config.x.counts_per_mm,
-            f64::from(step.target.y) / config.y.counts_per_mm,
+            f64::from(step.target.x) / dc.x.counts_per_mm,
+            f64::from(step.target.y) / dc.y.counts_per_mm,
         )
     };
     let corners = || drawings.iter().flat_map(|drawing| &drawing.moves).map(on_sheet).chain([Point::ORIGIN]);

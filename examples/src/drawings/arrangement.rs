@@ -336,15 +336,13 @@ impl Arrangement {
             let across_pens = self.across_pens || effort == OrderEffort::Join;
             let merge_gap_px = merge_mm * Order::PX_PER_MM;
             let lift_px = LIFT_MM * Order::PX_PER_MM;
-            let order = Order {
-                effort,
-                budget: ORDER_BUDGET,
-                merge_gap_px,
-                bridges_corners: true,
-                across_pens,
-                lift_px,
-                ..Order::default()
-            };
+            let order = Order::default()
+                .with_effort(effort)
+                .with_budget(ORDER_BUDGET)
+                .with_merge_gap_px(merge_gap_px)
+                .with_bridges_corners(true)
+                .with_across_pens(across_pens)
+                .with_lift_px(lift_px);
             drawing = order.apply_to(drawing);
         }
         let mut arranged = head.with(said, drawing.into_ops(tolerance_mm));

@@ -58,22 +58,20 @@ pub fn svg_drawing(
     hatch: Option<Hatching>,
 ) -> Result<SvgOps, String> {
     let (least, most) = TOLERANCES_MM;
-    let options = SvgOptions {
-        tolerance_mm: tolerance_mm.clamp(least, most),
-        arcs: true,
-        paper: how.paper.0,
-        keeps_clipped: how.keep_clipped,
-        occludes: how.occlude,
-        hatch,
-        px_per_inch: how.px_per_inch,
-        ..SvgOptions::default()
-    };
+    let options = SvgOptions::default()
+        .with_tolerance_mm(tolerance_mm.clamp(least, most))
+        .with_arcs(true)
+        .with_paper(how.paper.0)
+        .with_keeps_clipped(how.keep_clipped)
+        .with_occludes(how.occlude)
+        .with_hatch(hatch)
+        .with_px_per_inch(how.px_per_inch);
     let read = |bytes: Cow<'_, [u8]>, pens| {
         let error = |error: plotter_vector::svg_in::SvgError| {
             let text = error.to_string();
             text.strip_prefix("svg: ").or(text.strip_prefix("svg, ")).unwrap_or(&text).to_owned()
         };
-        read_svg_with_fonts(bytes, &SvgOptions { pens, ..options }, fonts).map_err(error)
+        read_svg_with_fonts(bytes, &options.with_pens(pens), fonts).map_err(error)
     };
     let may_name_pens = bytes.windows(PEN_GROUP.len()).any(|word| word == PEN_GROUP.as_bytes());
     let by_groups = if may_name_pens && how.pens.is_none() {

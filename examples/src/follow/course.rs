@@ -13,7 +13,7 @@ use plotter_motion::{Machine, config::MachineKind};
 use plotter_vector::{
     Gray, PxPoint,
     follow::{
-        CameraSettings, Correction, End, Paper, SimulatedCamera, SimulatedTable, Step, TableError, Tool,
+        Correction, End, FollowerConfig, Paper, SimulatedCamera, SimulatedTable, Step, TableError, Tool,
         judge,
     },
 };
@@ -108,20 +108,19 @@ impl<'a> Course<'a> {
         let size = sheet.map(|sheet| [sheet.picture.width(), sheet.picture.height()].map(f64::from));
         let found_mm = sheet.map_or(MM_PER_PX, |sheet| sheet.mm_per_px);
         let mm_per_px = arguments.mm_per_px.unwrap_or(found_mm);
-        let described = machine(arguments)?;
+        let (described, beside) = machine(arguments)?;
         let machine = FollowMachine::new(&described, mm_per_px, size, arguments.start)?;
         let mut correction = correction(arguments)?;
         let corrected_px = correction.as_ref().map(Correction::size_px);
         let is_real = arguments.from.is_some();
-        let is_turned =
-            arguments.live.is_some() && is_real && described.config().follower.camera_turn_deg != 0.0;
-        let turn_deg = if is_turned { described.config().follower.camera_turn_deg } else { 0.0 };
+        let is_turned = arguments.live.is_some() && is_real && beside.camera_turn_deg != 0.0;
+        let turn_deg = if is_turned { beside.camera_turn_deg } else { 0.0 };
         let turned_lens = if is_turned { correction.take() } else { None };
         let area = match &arguments.live {
-            Some(_) => Leader::area(&described, &machine)?,
+            Some(_) => Leader::area(&described, &beside, &machine)?,
             None => machine.area(),
         };
-        let camera = CameraSettings { seed: arguments.seed, ..*arguments.camera };
+        let camera = arguments.camera.with_seed(arguments.seed);
         let eyes = match (&arguments.from, sheet) {
             (None, Some(sheet)) => {
                 Eyes::Simulated(Box::new(SimulatedCamera::new(&Paper::of(&sheet.picture), camera)))
@@ -144,8 +143,11 @@ impl<'a> Course<'a> {
         };
         let is_gif = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "gif");
         let film = arguments.animation.as_ref().filter(|path| is_gif(path)).map(|_| FollowGif::default());
-        let leader =
-            arguments.live.as_ref().map(|port| Leader::open(&described, port, arguments)).transpose()?;
+        let leader = arguments
+            .live
+            .as_ref()
+            .map(|port| Leader::open(&described, &beside, port, arguments))
+            .transpose()?;
         Ok(Self {
             arguments,
             table: SimulatedTable::new(machine.at(), error),
@@ -302,16 +304,17 @@ impl<'a> Course<'a> {
     }
 }
 
-pub(super) fn machine(arguments: &FollowCommand) -> Result<Machine, String> {
+/// The machine, and the camera beside its tool.
+pub(super) fn machine(arguments: &FollowCommand) -> Result<(Machine, FollowerConfig), String> {
     let (text, named) = match &arguments.machine {
         Some(path) => {
             (String::from_utf8(read_file(path)?).map_err(|error| at(path, &error))?, path.as_path())
         }
         None => (MACHINE.to_owned(), Path::new("machines/plasma-follower.toml")),
     };
-    let machine = Machine::from_toml(&text).map_err(|error| at(named, &error))?;
+    let (machine, beside) = Machine::from_toml_with(&text).map_err(|error| at(named, &error))?;
     machine.require(MachineKind::Steppers, "follow").map_err(|error| at(named, &error))?;
-    Ok(machine)
+    Ok((machine, beside))
 }
 
 pub(super) fn correction(arguments: &FollowCommand) -> Result<Option<Correction>, String> {

@@ -32,19 +32,19 @@ impl Follower {
         most_windows: Option<u64>,
     ) -> Self {
         if arguments.method == Method::Ours {
-            return Self::Ours(Box::new(MappingFollower::new(MappingSettings {
-                area: Some(area),
-                max_windows: arguments.windows.unwrap_or(most_windows.unwrap_or(WINDOWS).min(WINDOWS)),
-                correction,
-                ..MappingSettings::default()
-            })));
+            return Self::Ours(Box::new(MappingFollower::new(
+                MappingSettings::default()
+                    .with_area(Some(area))
+                    .with_max_windows(
+                        arguments.windows.unwrap_or(most_windows.unwrap_or(WINDOWS).min(WINDOWS)),
+                    )
+                    .with_correction(correction),
+            )));
         }
-        let settings = PublishedSettings {
-            hand: if arguments.hand == Some(Side::Left) { Hand::Left } else { Hand::Right },
-            only_connected: arguments.method == Method::Connected,
-            area: Some(area),
-            ..PublishedSettings::for_lines(arguments.thinnest)
-        };
+        let settings = PublishedSettings::for_lines(arguments.thinnest)
+            .with_hand(if arguments.hand == Some(Side::Left) { Hand::Left } else { Hand::Right })
+            .with_only_connected(arguments.method == Method::Connected)
+            .with_area(Some(area));
         Self::Published(PublishedFollower::new(settings), correction.map(Box::new))
     }
 

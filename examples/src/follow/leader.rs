@@ -4,9 +4,10 @@ use super::command::FollowCommand;
 use super::kerf::beside;
 use super::led::Led;
 use crate::follow::FollowMachine;
+use plotter_motion::config::SteppersConfig;
 use plotter_motion::drawing::{Drawing, Stroke};
 use plotter_motion::{Machine, Point, Vec2};
-use plotter_vector::PxPoint;
+use plotter_vector::{PxPoint, follow::FollowerConfig};
 
 /// So far outside of the area a place may lie by rounding, mm.
 const ROUNDING_MM: f64 = 0.001;
@@ -30,16 +31,22 @@ impl Leader {
     /// # Errors
     ///
     /// The port's, or that no machine is heard.
-    pub(super) fn open(machine: &Machine, port: &str, arguments: &FollowCommand) -> Result<Self, String> {
+    pub(super) fn open(
+        machine: &Machine,
+        beside: &FollowerConfig,
+        port: &str,
+        arguments: &FollowCommand,
+    ) -> Result<Self, String> {
         let config = machine.config();
+        let steppers = SteppersConfig::of(machine);
         let step = |steps_per_mm: f64| 1.0 / steps_per_mm;
         Ok(Self {
             led: Led::open(machine, port, arguments)?,
-            camera: Vec2::new(config.follower.camera_x_mm, config.follower.camera_y_mm),
-            kerf_mm: config.follower.kerf_mm,
+            camera: Vec2::new(beside.camera_x_mm, beside.camera_y_mm),
+            kerf_mm: beside.kerf_mm,
             area_mm: Vec2::new(config.area.width_mm, config.area.height_mm),
-            step_mm: step(config.x.stepper.steps_per_mm).max(step(config.y.stepper.steps_per_mm)),
-            speed_mm_s: config.planner.speed_mm_s,
+            step_mm: step(steppers.x.steps_per_mm).max(step(steppers.y.steps_per_mm)),
+            speed_mm_s: steppers.planner.speed_mm_s,
         })
     }
 
@@ -48,11 +55,15 @@ impl Leader {
     /// # Errors
     ///
     /// There is no such place, or the start of the way is none.
-    pub(super) fn area(machine: &Machine, follow: &FollowMachine) -> Result<[PxPoint; 2], String> {
+    pub(super) fn area(
+        machine: &Machine,
+        beside: &FollowerConfig,
+        follow: &FollowMachine,
+    ) -> Result<[PxPoint; 2], String> {
         let config = machine.config();
-        let beside = [config.follower.camera_x_mm, config.follower.camera_y_mm];
+        let half_kerf = 0.5 * beside.kerf_mm;
+        let beside = [beside.camera_x_mm, beside.camera_y_mm];
         let size = [config.area.width_mm, config.area.height_mm];
-        let half_kerf = 0.5 * config.follower.kerf_mm;
         // The tool reaches 0 to the size, the camera that and its distance from the tool.
         let low = beside.map(|mm| mm.max(0.0) + half_kerf);
         let high = [0, 1].map(|axis| (size[axis] + beside[axis].min(0.0)) - half_kerf);

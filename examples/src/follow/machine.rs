@@ -1,6 +1,7 @@
 //! [`FollowMachine`]: the machine under a line follower: its planner and its steps.
 
 use crate::machine::{PlotEvent, SteppedFigures, SteppedPlot};
+use plotter_motion::config::SteppersConfig;
 use plotter_motion::kinematics::MotorScale;
 use plotter_motion::{Machine, Pen, PlannerSettings, PlotOp, Point, stepgen::StepGenSettings};
 use plotter_vector::PxPoint;
@@ -41,8 +42,9 @@ impl FollowMachine {
         start: Option<[f64; 2]>,
     ) -> Result<Self, String> {
         let config = machine.config();
+        let steppers = SteppersConfig::of(machine);
         let motor = |steps_per_mm| MotorScale { steps_per_mm, inverted: false };
-        let motors = [motor(config.x.stepper.steps_per_mm), motor(config.y.stepper.steps_per_mm)];
+        let motors = [motor(steppers.x.steps_per_mm), motor(steppers.y.steps_per_mm)];
         let finest = motors[0].steps_per_mm.max(motors[1].steps_per_mm);
         // Places come from a picture, and no file has rounded them.
         let settings = PlannerSettings {

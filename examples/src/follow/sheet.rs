@@ -2,9 +2,7 @@
 
 use super::command::FollowCommand;
 use crate::shared::{SizeOptions, UsualSize, at, doubted, read_file, told_ink, told_notes};
-use plotter_vector::{
-    FileRows, Gray, PxPoint, Vectorizer, follow::Paper, picture::GrayError, stroke::Bounded,
-};
+use plotter_vector::{FileRows, Gray, Ours, PxPoint, Vectorizer, follow::Paper, picture::GrayError};
 use std::io::Cursor;
 
 /// Farther than this the true lines are not from the middle of the picture's lines, px: less than what the
@@ -81,7 +79,7 @@ pub(super) fn sheet(arguments: &FollowCommand, name: &str) -> Result<Sheet, Stri
         }
         None => built_in()?.picture().map_err(|error| error.to_string())?,
     };
-    let vectorizer = Vectorizer { ours: Bounded { tolerance_px: TRUTH_PX }, ..Vectorizer::default() };
+    let vectorizer = Vectorizer::from(Ours::default().with_tolerance_px(TRUTH_PX));
     let traced = vectorizer.vectorize(&picture).map_err(|error| format!("{name}: {error}"))?;
     doubted(traced.doubt, "`plotter trace --ink F.png` shows what was taken for ink")
         .map_err(|error| format!("{name}: {error}"))?;

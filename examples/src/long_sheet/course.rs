@@ -7,11 +7,14 @@ use crate::long_sheet::{
 };
 use crate::shared::{WorkShown, at, read_file, write_file};
 use plotter_motion::{Machine, MachineConfig, PlotOp, config::MachineKind};
-use plotter_stitch::{sheet::JoinFrames, split::FramePasses};
+use plotter_stitch::{
+    sheet::{JoinFrames, SheetConfig},
+    split::FramePasses,
+};
 
 pub(super) fn draw_sheet(arguments: &LongSheetCommand) -> Result<(), String> {
-    let machine = machine(arguments)?;
-    let mut sheet = LongSheetMachine::new(&machine)?;
+    let (machine, sheet) = machine(arguments)?;
+    let mut sheet = LongSheetMachine::new(&machine, &sheet)?;
     if let Some(edges_mm) = arguments.paper_edges {
         /// As a roll lies that was mounted by hand, rad.
         const TURN_RAD: f64 = 0.0005;
@@ -47,16 +50,20 @@ pub(super) fn draw_sheet(arguments: &LongSheetCommand) -> Result<(), String> {
     }
 }
 
-pub(super) fn machine(arguments: &LongSheetCommand) -> Result<Machine, String> {
+pub(super) fn machine(arguments: &LongSheetCommand) -> Result<(Machine, SheetConfig), String> {
     match &arguments.machine {
         Some(path) => {
             let text = String::from_utf8(read_file(path)?)
                 .map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
-            let machine = Machine::from_toml(&text).map_err(|error| at(path, &error))?;
+            let (machine, sheet) = Machine::from_toml_with(&text).map_err(|error| at(path, &error))?;
             machine.require(MachineKind::Steppers, "long_sheet").map_err(|error| at(path, &error))?;
-            Ok(machine)
+            Ok((machine, sheet))
         }
-        None => Machine::new(MachineConfig::textile_plotter()).map_err(|error| error.to_string()),
+        None => {
+            let machine =
+                Machine::new(MachineConfig::textile_plotter()).map_err(|error| error.to_string())?;
+            Ok((machine, SheetConfig::textile_plotter()))
+        }
     }
 }
 

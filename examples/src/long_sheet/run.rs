@@ -1,6 +1,7 @@
 //! [`LongSheetRun`]: a drawing divided into frames, and each frame drawn on a simulated sheet.
 
 use crate::long_sheet::FrameChange;
+use plotter_motion::config::SteppersConfig;
 use plotter_motion::stepgen::{PlotTimer, StepGenSettings};
 use plotter_motion::{Axis, Machine, Planner, PlannerSettings, PlotOp, Point, Vec2};
 use plotter_stitch::{
@@ -8,7 +9,7 @@ use plotter_stitch::{
     ReferenceLines, SheetSettings, StripJoin,
     paper::{PaperSettings, SensedPaper},
     sense::SearchSettings,
-    sheet::{FoldCheck, JoinFrames, JointReport, PublishedJoin},
+    sheet::{FoldCheck, JoinFrames, JointReport, PublishedJoin, SheetConfig},
 };
 
 /// Most fits by hand at one frame change; then something else is wrong.
@@ -46,11 +47,11 @@ impl LongSheetMachine {
     /// # Errors
     ///
     /// That the machine moves no sheet, or that its head does not reach the marks.
-    pub fn new(machine: &Machine) -> Result<Self, String> {
+    pub fn new(machine: &Machine, sheet: &SheetConfig) -> Result<Self, String> {
         /// From the table's sides to the widest field, mm: the head must see the paper's edges beside it.
         const BESIDE_MM: f64 = 10.0;
         let config = machine.config();
-        let sheet = config.sheet;
+        let steppers = SteppersConfig::of(machine);
         if sheet.frame_mm <= 0.0 {
             return Err(
                 "sheet.frame_mm is 0: this machine moves no sheet; machines/textile-plotter.toml does".into(),
@@ -64,9 +65,9 @@ impl LongSheetMachine {
             frame_mm: sheet.frame_mm,
         };
         let strip = ReferenceLines::strip16_on(&field);
-        let search = SearchSettings { fast_mm_s: sheet.sensing_mm_s, ..SearchSettings::default() };
+        let search = SearchSettings::default().with_fast_mm_s(sheet.sensing_mm_s);
         // Marks are drawn with the frame before, and looked for after it has been moved.
-        let beyond_mm = config.homing.pull_off_mm;
+        let beyond_mm = steppers.homing.pull_off_mm;
         let y_marks_mm =
             || strip.marks.iter().filter(|group| group.axis == Axis::Y).flat_map(|group| &group.at_mm);
         let least_mm = y_marks_mm().fold(f64::INFINITY, |least, mm| least.min(*mm)) - search.window_mm;
@@ -87,7 +88,7 @@ impl LongSheetMachine {
                 window_mm: sheet.cut_window_mm,
                 clear_mm: sheet.cut_clear_mm,
             },
-            sheet: SheetSettings { field, anchor_mm: sheet.anchor_mm, ..SheetSettings::default() },
+            sheet: SheetSettings::default().with_field(field).with_anchor_mm(sheet.anchor_mm),
             strip,
             search,
             planner: PlannerSettings::of(machine),
@@ -105,11 +106,9 @@ impl LongSheetMachine {
     pub fn on_paper(self, edges_mm: [f64; 2], turn_rad: f64, seed: u64) -> Result<Self, String> {
         let Self { layout, sheet, beyond_mm, area, .. } = self;
         let Field { begin_mm, frame_mm, .. } = sheet.field;
-        let settings = PaperSettings {
-            reach_mm: [-beyond_mm, area.x + beyond_mm],
-            rows_mm: [begin_mm, begin_mm + frame_mm],
-            ..PaperSettings::default()
-        };
+        let settings = PaperSettings::default()
+            .with_reach_mm([-beyond_mm, area.x + beyond_mm])
+            .with_rows_mm([begin_mm, begin_mm + frame_mm]);
         let mut search = PaperSearch::new(settings);
         SensedPaper::new(edges_mm, turn_rad, seed).run(&mut search).map_err(|error| error.to_string())?;
         let paper = search.paper().map_err(|error| error.to_string())?;
@@ -117,7 +116,7 @@ impl LongSheetMachine {
             paper.field(paper.widest_mm().floor(), begin_mm, frame_mm).map_err(|error| error.to_string())?;
         Ok(Self {
             layout: FrameLayout { width_mm: field.width_mm, ..layout },
-            sheet: SheetSettings { field, ..sheet },
+            sheet: sheet.with_field(field),
             strip: ReferenceLines::strip16_on(&field),
             ..self
         })

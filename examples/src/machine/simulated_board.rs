@@ -3,6 +3,7 @@
 
 use crate::machine::{PlotOutcome, Recorded};
 use core::time::Duration;
+use plotter_motion::config::{DcConfig, OneBeltConfig};
 use plotter_motion::control::ChosenController;
 use plotter_motion::firmware::{MarkingBoard, MarkingBoardSettings};
 use plotter_motion::kinematics::Kinematics as _;
@@ -103,16 +104,17 @@ impl SimulatedBoard {
 /// What a log of a marking board says of itself, beside its machine and controller.
 #[must_use]
 pub fn board_header(machine: &Machine) -> Header {
-    let config = machine.config();
+    let belt = OneBeltConfig::of(machine);
+    let dc = DcConfig::of(machine);
     let settings = MarkingBoardSettings::of(machine);
     let mm_per_pulse = 1.0 / settings.belt.steps_per_mm();
     let signs = match settings.belt.signs() {
         plotter_motion::kinematics::BeltSigns::DirectionTable => "direction-table",
         plotter_motion::kinematics::BeltSigns::TrackingEquations => "tracking-equations",
     };
-    let tolerance = match config.control.controller {
+    let tolerance = match dc.control.controller {
         // Within the allowed error along both axes, one motor may be off by both.
-        ControllerChoice::Published => (2.0 * config.point_to_point.allowed_error_mm / mm_per_pulse).ceil(),
+        ControllerChoice::Published => (2.0 * belt.point_to_point.allowed_error_mm / mm_per_pulse).ceil(),
         _ => 0.0,
     };
     Header::new()
@@ -134,9 +136,8 @@ pub fn simulate_board<W: Write>(
     recorder: &mut BenchRecorder<W>,
     mut progress: impl FnMut(u32),
 ) -> PlotOutcome {
-    let config = machine.config();
-    let pwm_steps =
-        [&config.x, &config.y].map(|axis| u16::try_from(axis.motor.pwm_steps).unwrap_or(u16::MAX));
+    let dc = DcConfig::of(machine);
+    let pwm_steps = [&dc.x, &dc.y].map(|axis| u16::try_from(axis.motor.pwm_steps).unwrap_or(u16::MAX));
     let mut board = SimulatedBoard::new(machine);
     let mut outcome =
         PlotOutcome { targets: u32::try_from(moves.len()).unwrap_or(u32::MAX), ..PlotOutcome::default() };

@@ -2,6 +2,7 @@
 
 use crate::machine::Recorded;
 use core::time::Duration;
+use plotter_motion::config::DcConfig;
 use plotter_motion::plant::{Bench, BenchEvent, BenchSettings};
 use plotter_motion::protocol::HostEvent;
 use plotter_motion::{Machine, Pen, PenMove, Point, Segment, StepPoint};
@@ -36,10 +37,9 @@ pub fn simulate<W: Write>(
     recorder: &mut BenchRecorder<W>,
     mut progress: impl FnMut(u32),
 ) -> PlotOutcome {
-    let config = *machine.config();
-    let on_sheet = |p: StepPoint| {
-        Point::new(f64::from(p.x) / config.x.counts_per_mm, f64::from(p.y) / config.y.counts_per_mm)
-    };
+    let dc = DcConfig::of(machine);
+    let on_sheet =
+        |p: StepPoint| Point::new(f64::from(p.x) / dc.x.counts_per_mm, f64::from(p.y) / dc.y.counts_per_mm);
     let mut outcome =
         PlotOutcome { targets: u32::try_from(moves.len()).unwrap_or(u32::MAX), ..PlotOutcome::default() };
     let mut bench = Bench::new(machine, BenchSettings::default(), moves.into_iter());

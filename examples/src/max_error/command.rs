@@ -7,6 +7,7 @@ use crate::max_error::follow;
 use crate::shared::{PaperOption, SizeOptions, Telling, WorkShown, at, read_file, run, write_file};
 use clap::Parser;
 use plotter_motion::{Machine, MachineConfig};
+use plotter_vector::trace::VectorizeConfig;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -64,8 +65,8 @@ impl MaxErrorCommand {
 }
 
 pub(super) fn draw(args: &MaxErrorCommand) -> Result<(), String> {
-    let machine = machine(args)?;
-    let scan = Scan::read(args, &machine)?;
+    let (machine, vectorize) = machine(args)?;
+    let scan = Scan::read(args, &machine, vectorize)?;
     let bar = WorkShown::said(args.telling);
     let planned = plan(args, &machine, &scan, &bar);
     bar.say("drawing");
@@ -110,11 +111,13 @@ pub(super) fn draw(args: &MaxErrorCommand) -> Result<(), String> {
     Ok(())
 }
 
-pub(super) fn machine(args: &MaxErrorCommand) -> Result<Machine, String> {
+/// The machine, and how pictures become strokes for it.
+pub(super) fn machine(args: &MaxErrorCommand) -> Result<(Machine, VectorizeConfig), String> {
     let Some(path) = &args.machine else {
-        return Machine::new(MachineConfig::default()).map_err(|error| error.to_string());
+        let machine = Machine::new(MachineConfig::default()).map_err(|error| error.to_string())?;
+        return Ok((machine, VectorizeConfig::default()));
     };
     let text = String::from_utf8(read_file(path)?)
         .map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
-    Machine::from_toml(&text).map_err(|error| at(path, &error))
+    Machine::from_toml_with(&text).map_err(|error| at(path, &error))
 }

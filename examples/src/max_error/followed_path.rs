@@ -3,6 +3,7 @@
 use crate::machine::{PlotEvent, SimulatedBoard, SteppedPlot};
 use crate::max_error::TruePath;
 use core::time::Duration;
+use plotter_motion::config::{DcConfig, SteppersConfig};
 use plotter_motion::firmware::MarkingBoardSettings;
 use plotter_motion::kinematics::MotorScale;
 use plotter_motion::plant::{Bench, BenchEvent, BenchSettings, MarkingBoardPlantSettings, StepperPlant};
@@ -47,14 +48,14 @@ pub struct FollowedPath {
 /// Greatest distance of what counts or steps make of a place, mm.
 #[must_use]
 pub fn rounding_mm(machine: &Machine) -> f64 {
-    let config = machine.config();
+    let dc = DcConfig::of(machine);
     let half = |per_mm: f64| 0.5 / per_mm;
     match machine.kind() {
         // What is commanded is not rounded before it is stepped: the steps are part of what is measured.
         MachineKind::Steppers => 0.0,
         // Half a count of both motors is one along an axis, and none along the other.
-        MachineKind::Belt => half(config.x.counts_per_mm),
-        MachineKind::Gantry => half(config.x.counts_per_mm).hypot(half(config.y.counts_per_mm)),
+        MachineKind::Belt => half(dc.x.counts_per_mm),
+        MachineKind::Gantry => half(dc.x.counts_per_mm).hypot(half(dc.y.counts_per_mm)),
     }
 }
 
@@ -65,14 +66,18 @@ pub fn rounding_mm(machine: &Machine) -> f64 {
 /// It becomes slower than any machine may be described.
 pub fn slowed(machine: &Machine, budget: &Budget) -> Result<Machine, String> {
     let mut config: MachineConfig = *machine.config();
-    let contouring = &mut config.control.contouring;
-    (contouring.feed_mm_s, contouring.accel_mm_s2, contouring.jerk_mm_s3) =
-        budget.slowed(contouring.feed_mm_s, contouring.accel_mm_s2, contouring.jerk_mm_s3);
-    let planner = &mut config.planner;
-    (planner.speed_mm_s, planner.accel_mm_s2, planner.jerk_mm_s3) =
-        budget.slowed(planner.speed_mm_s, planner.accel_mm_s2, planner.jerk_mm_s3);
-    for of_motor in [&mut planner.accel_x_mm_s2, &mut planner.accel_y_mm_s2] {
-        (_, *of_motor, _) = budget.slowed(0.0, *of_motor, 0.0);
+    if let Some(dc) = config.dc_mut() {
+        let contouring = &mut dc.control.contouring;
+        (contouring.feed_mm_s, contouring.accel_mm_s2, contouring.jerk_mm_s3) =
+            budget.slowed(contouring.feed_mm_s, contouring.accel_mm_s2, contouring.jerk_mm_s3);
+    }
+    if let Some(steppers) = config.steppers_mut() {
+        let planner = &mut steppers.planner;
+        (planner.speed_mm_s, planner.accel_mm_s2, planner.jerk_mm_s3) =
+            budget.slowed(planner.speed_mm_s, planner.accel_mm_s2, planner.jerk_mm_s3);
+        for of_motor in [&mut planner.accel_x_mm_s2, &mut planner.accel_y_mm_s2] {
+            (_, *of_motor, _) = budget.slowed(0.0, *of_motor, 0.0);
+        }
     }
     Machine::new(config).map_err(|error| error.to_string())
 }
@@ -98,6 +103,7 @@ pub fn follow(machine: &Machine, ops: &[PlotOp], blend_mm: f64) -> Result<Follow
 /// As [`follow`].
 pub fn predicted_s(machine: &Machine, ops: &[PlotOp], blend_mm: f64) -> Result<f64, String> {
     let config = machine.config();
+    let dc = DcConfig::of(machine);
     if machine.kind() == MachineKind::Steppers {
         let mut plot = stepped(machine, blend_mm)?;
         for op in ops {
@@ -105,7 +111,7 @@ pub fn predicted_s(machine: &Machine, ops: &[PlotOp], blend_mm: f64) -> Result<f
         }
         return plot.finish(&mut |_| {}).map(|figures| figures.total_s).map_err(|error| error.to_string());
     }
-    let contouring = &config.control.contouring;
+    let contouring = &dc.control.contouring;
     let limits = MotionLimits {
         speed_mm_s: contouring.feed_mm_s,
         accel_mm_s2: contouring.accel_mm_s2,
@@ -127,10 +133,9 @@ pub fn predicted_s(machine: &Machine, ops: &[PlotOp], blend_mm: f64) -> Result<f
 fn on_the_gantry(machine: &Machine, ops: &[PlotOp]) -> Result<FollowedPath, String> {
     let moves: Result<Vec<PenMove>, OutOfReach> = targets(machine, ops.iter().copied()).collect();
     let moves = moves.map_err(|error| error.to_string())?;
-    let config = machine.config();
-    let on_sheet = |p: StepPoint| {
-        Point::new(f64::from(p.x) / config.x.counts_per_mm, f64::from(p.y) / config.y.counts_per_mm)
-    };
+    let dc = DcConfig::of(machine);
+    let on_sheet =
+        |p: StepPoint| Point::new(f64::from(p.x) / dc.x.counts_per_mm, f64::from(p.y) / dc.y.counts_per_mm);
     let commanded = commanded(Point::ORIGIN, &moves, on_sheet);
     let (count, mut reached) = (moves.len(), 0);
     let mut bench = Bench::new(machine, BenchSettings::default(), moves.into_iter());
@@ -177,10 +182,10 @@ fn on_the_board(machine: &Machine, ops: &[PlotOp]) -> Result<FollowedPath, Strin
 }
 
 fn on_steppers(machine: &Machine, ops: &[PlotOp], blend_mm: f64) -> Result<FollowedPath, String> {
-    let config = machine.config();
-    let scales = [&config.x.stepper, &config.y.stepper].map(|stepper| stepper.steps_per_mm);
+    let steppers = SteppersConfig::of(machine);
+    let scales = [&steppers.x, &steppers.y].map(|stepper| stepper.steps_per_mm);
     let mut motors = SteppedMotors {
-        plant: StepperPlant::new(config.stepper_motor, config.stepper_motor),
+        plant: StepperPlant::new(steppers.stepper_motor, steppers.stepper_motor),
         path: TruePath::default(),
         last: Duration::ZERO,
         scales,
@@ -215,7 +220,7 @@ fn on_steppers(machine: &Machine, ops: &[PlotOp], blend_mm: f64) -> Result<Follo
 }
 
 fn stepped(machine: &Machine, blend_mm: f64) -> Result<SteppedPlot, String> {
-    let config = machine.config();
+    let steppers = SteppersConfig::of(machine);
     let path = if blend_mm >= LEAST_BLEND_MM {
         PathMode::Tolerance { path_tolerance_mm: blend_mm }
     } else {
@@ -223,7 +228,7 @@ fn stepped(machine: &Machine, blend_mm: f64) -> Result<SteppedPlot, String> {
     };
     let settings = PlannerSettings::of(machine).following(path);
     let motor = |steps_per_mm| MotorScale { steps_per_mm, inverted: false };
-    let motors = [motor(config.x.stepper.steps_per_mm), motor(config.y.stepper.steps_per_mm)];
+    let motors = [motor(steppers.x.steps_per_mm), motor(steppers.y.steps_per_mm)];
     SteppedPlot::new(settings, StepGenSettings::of(machine), motors)
 }
 

@@ -1,15 +1,14 @@
 //! The scan, where it lies on the sheet, and its vectorizations.
 
 use super::command::MaxErrorCommand;
-use crate::shared::{IN_MACHINE_FILE, at, doubted, fit_picture, read_file, told_ink, told_notes, vectorizer};
-use plotter_motion::{
-    Machine, Point,
-    config::{PiecesChoice, VectorizeConfig},
-};
+use crate::shared::{IN_MACHINE_FILE, at, doubted, fit_picture, read_file, told_ink, told_notes};
+use plotter_motion::{Machine, Point};
 use plotter_vector::{
     Bitmap, Drawing, FileRows, Gray, PxPoint, Scale, Vectorized,
     ink::Despeckled,
     report::{FollowedLines, InkDistance, Spots, followed_lines},
+    stroke::Pieces,
+    trace::VectorizeConfig,
 };
 use std::io::Cursor;
 use std::path::Path;
@@ -40,7 +39,11 @@ pub(super) struct Scan {
 }
 
 impl Scan {
-    pub(super) fn read(args: &MaxErrorCommand, machine: &Machine) -> Result<Self, String> {
+    pub(super) fn read(
+        args: &MaxErrorCommand,
+        machine: &Machine,
+        mut vectorize: VectorizeConfig,
+    ) -> Result<Self, String> {
         let (bytes, path) = match &args.image {
             Some(path) => (read_file(path)?, path.as_path()),
             None => (include_bytes!("../../data/flag.png").to_vec(), Path::new("flag.png")),
@@ -63,8 +66,8 @@ impl Scan {
         told.extend(straightened.iter().flat_map(|found| found.paper.told()));
         let picture = scan.into_gray().map_err(|error| at(path, &error))?;
         // Straight lines: what is followed is what was measured.
-        let vectorize = VectorizeConfig { pieces: PiecesChoice::Lines, ..machine.config().vectorize };
-        let settings = vectorizer(&vectorize, scale.mm_per_px())?;
+        vectorize.pieces = Pieces::Lines;
+        let settings = vectorize.vectorizer(scale.mm_per_px()).map_err(|error| error.to_string())?;
         let (ink, (all_ink, _)) = (settings.ink(&picture), settings.threshold.apply(&picture));
         let (reference, dirt, insides) = (Drawing::default(), Despeckled::default(), Spots::default());
         let mut scan = Self { picture, ink, all_ink, dirt, insides, scale, told, vectorize, reference };
@@ -80,8 +83,9 @@ impl Scan {
     }
 
     pub(super) fn traced(&self, max_error_px: f64) -> Result<Vectorized, String> {
-        let config = VectorizeConfig { max_error_px, ..self.vectorize };
-        let vectorizer = vectorizer(&config, self.scale.mm_per_px())?;
+        let mut config = self.vectorize;
+        config.max_error_px = max_error_px;
+        let vectorizer = config.vectorizer(self.scale.mm_per_px()).map_err(|error| error.to_string())?;
         vectorizer.vectorize(&self.picture).map_err(|error| error.to_string())
     }
 

@@ -3,7 +3,7 @@
 use crate::machine::PathDeviation;
 use crate::max_error::{FollowedPath, follow};
 use core::f64::consts::TAU;
-use plotter_motion::{Machine, MachineConfig, PlotOp, Point, Vec2, config::SerialConfig};
+use plotter_motion::{Machine, PlotOp, Point, Vec2};
 
 /// Directions of the star; with lines there and back it has all that a motor can be asked to do.
 const HEADINGS: u32 = 16;
@@ -90,9 +90,8 @@ pub fn deviation_mm(path: &FollowedPath) -> f64 {
 /// It cannot be planned.
 pub fn speed_trial(machine: &Machine, length_mm: f64, blend_mm: f64) -> Result<f64, String> {
     // The pauses of a serial line are no motion.
-    let serial = SerialConfig { byte_gap_ms: 0.0, ..machine.config().serial };
-    let machine =
-        Machine::new(MachineConfig { serial, ..*machine.config() }).map_err(|error| error.to_string())?;
+    let serial = machine.config().serial.with_byte_gap_ms(0.0);
+    let machine = Machine::new(machine.config().with_serial(serial)).map_err(|error| error.to_string())?;
     let path = follow(&machine, &test_figure(&machine, length_mm), blend_mm)?;
     if !path.is_done || path.drawn.len() != path.commanded.len() {
         return Ok(f64::INFINITY);

@@ -5,9 +5,10 @@ use super::pictures::Pictures;
 use super::recording::{record, replay};
 use crate::shared::{
     IN_MACHINE_FILE, PaperOption, SizeOptions, Telling, at, doubted, fit_picture, html_page, lost_ink,
-    read_file, run, told_ink, told_notes, vectorized, vectorizer, write_file,
+    read_file, run, told_ink, told_notes, vectorized, write_file,
 };
 use clap::{Parser, ValueEnum};
+use plotter_motion::config::DcConfig;
 use plotter_motion::{
     Machine, MachineConfig, PenMove, PlotOp,
     config::{ControllerChoice, MachineKind},
@@ -17,8 +18,9 @@ use plotter_motion::{
 };
 use plotter_replay::compare::Ways;
 use plotter_vector::{
-    Algorithm, Drawing, Scale, TracedSheet, Vectorizer,
+    Drawing, Ours, Scale, TracedSheet, Vectorizer,
     picture::FileNotes,
+    trace::VectorizeConfig,
     trace::{Prefer, SheetErrors},
 };
 use std::fmt::Write as _;
@@ -120,8 +122,8 @@ impl PlotCommand {
 
 pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
     let began = Instant::now();
-    let machine = machine(args)?;
-    let Plan { vectorizer, traced, scale, told } = trace(args, &machine)?;
+    let (machine, vectorize) = machine(args)?;
+    let Plan { vectorizer, traced, scale, told } = trace(args, &machine, &vectorize)?;
     std::fs::create_dir_all(&args.out)
         .map_err(|error| at(&args.out, &format!("this folder cannot be made: {error}")))?;
     let file = |name: &str| args.out.join(name);
@@ -138,7 +140,7 @@ pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
     let summary = Summary {
         drawing: &traced.drawing,
         errors: &errors,
-        kept: (vectorizer.algorithm == Algorithm::Ours).then(|| is_kept(&vectorizer, &traced, &errors)),
+        kept: vectorizer.ours().map(|ours| is_kept(ours, &traced, &errors)),
         dirt: traced.removed,
         outcome: &outcome,
         plotted: plotter.contour_error(Ways::Drawn),
@@ -179,10 +181,10 @@ pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
 }
 
 /// Whether all ink is drawn within the greatest error, and nothing else.
-fn is_kept(vectorizer: &Vectorizer, traced: &TracedSheet, errors: &SheetErrors) -> bool {
+fn is_kept(ours: &Ours, traced: &TracedSheet, errors: &SheetErrors) -> bool {
     traced.removed.removed_marks == 0
         && traced.look.is_none_or(|look| look.left_out == 0)
-        && errors.are_within(vectorizer.ours.tolerance_px)
+        && errors.are_within(ours.tolerance_px)
 }
 
 /// Moves of the machine; the files of the drawing are written meanwhile.
@@ -207,7 +209,7 @@ fn moves(
 }
 
 pub(super) fn controller_name(machine: &Machine) -> &'static str {
-    match machine.config().control.controller {
+    match DcConfig::of(machine).control.controller {
         ControllerChoice::Published => "published",
         _ => "contouring",
     }
@@ -217,12 +219,13 @@ pub(super) fn name(value: &impl ValueEnum) -> String {
     value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
-pub(super) fn machine(args: &PlotCommand) -> Result<Machine, String> {
-    let mut config = match &args.machine {
+/// The machine, and how pictures become strokes for it.
+pub(super) fn machine(args: &PlotCommand) -> Result<(Machine, VectorizeConfig), String> {
+    let (mut config, vectorize) = match &args.machine {
         Some(path) => {
             let text = String::from_utf8(read_file(path)?)
                 .map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
-            let machine = Machine::from_toml(&text).map_err(|error| at(path, &error))?;
+            let (machine, vectorize) = Machine::from_toml_with(&text).map_err(|error| at(path, &error))?;
             let refusal = match (machine.kind(), &args.firmware) {
                 (MachineKind::Steppers, _) => Some(("plot", "plan for this one with the example `stepper`")),
                 (MachineKind::Belt, Some(_)) => {
@@ -235,16 +238,20 @@ pub(super) fn machine(args: &PlotCommand) -> Result<Machine, String> {
                     .require(MachineKind::Gantry, user)
                     .map_err(|error| at(path, &format!("{error}; or {instead}")))?;
             }
-            *machine.config()
+            (*machine.config(), vectorize)
         }
-        None => MachineConfig::default(),
+        None => (MachineConfig::default(), VectorizeConfig::default()),
     };
-    match args.controller {
-        Some(ControllerArg::Published) => config.control.controller = ControllerChoice::Published,
-        Some(ControllerArg::Contouring) => config.control.controller = ControllerChoice::Contouring,
-        None => {}
+    let controller = match args.controller {
+        Some(ControllerArg::Published) => Some(ControllerChoice::Published),
+        Some(ControllerArg::Contouring) => Some(ControllerChoice::Contouring),
+        None => None,
+    };
+    if let (Some(dc), Some(controller)) = (config.dc_mut(), controller) {
+        dc.control.controller = controller;
     }
-    Machine::new(config).map_err(|error| error.to_string())
+    let machine = Machine::new(config).map_err(|error| error.to_string())?;
+    Ok((machine, vectorize))
 }
 
 fn picture_path(args: &PlotCommand) -> &Path {
@@ -260,7 +267,7 @@ struct Plan {
     told: Vec<(&'static str, String)>,
 }
 
-fn trace(args: &PlotCommand, machine: &Machine) -> Result<Plan, String> {
+fn trace(args: &PlotCommand, machine: &Machine, vectorize: &VectorizeConfig) -> Result<Plan, String> {
     let mut bytes = match &args.image {
         Some(path) => read_file(path)?,
         None => include_bytes!("../../data/flag.png").to_vec(),
@@ -276,13 +283,15 @@ fn trace(args: &PlotCommand, machine: &Machine) -> Result<Plan, String> {
     }
     let (scale, size) = fit_picture(&notes, &asked, machine)?;
     let mut vectorizer = match args.algorithm {
-        AlgorithmArg::Published => Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() },
+        AlgorithmArg::Published => Vectorizer::published(),
         // One pen, whatever the file says: this machine has no carousel.
-        AlgorithmArg::Ours => vectorizer(&machine.config().vectorize, scale.mm_per_px())?,
+        AlgorithmArg::Ours => vectorize.vectorizer(scale.mm_per_px()).map_err(|error| error.to_string())?,
     };
     // A photograph's rims are ragged, in even light, too: ink that is bare there is worth no stroke.
-    if paper.is_some() {
-        vectorizer.prefer = Prefer::Strokes;
+    if paper.is_some()
+        && let Some(ours) = vectorizer.ours_mut()
+    {
+        ours.prefer = Prefer::Strokes;
     }
     let (traced, read) = vectorized(&vectorizer, bytes, page).map_err(|error| at(path, &error))?;
     doubted(traced.doubt, IN_MACHINE_FILE).map_err(|error| at(path, &error))?;
@@ -298,11 +307,11 @@ fn trace(args: &PlotCommand, machine: &Machine) -> Result<Plan, String> {
 
 /// Notes on the chart of the errors: the thesis' figures, or the bound that ours promises.
 pub(super) fn promises(vectorizer: &Vectorizer) -> Vec<String> {
-    match vectorizer.algorithm {
-        Algorithm::Published => vec![
+    match vectorizer.ours() {
+        None => vec![
             "published: flag mean 0.0991, max 2.0392, sd 0.2435 px;".into(),
             "technical drawing mean 0.0042, max 0.5547, sd 0.0386 px".into(),
         ],
-        Algorithm::Ours => vec![format!("promised: {} px at most", vectorizer.ours.tolerance_px)],
+        Some(ours) => vec![format!("promised: {} px at most", ours.tolerance_px)],
     }
 }

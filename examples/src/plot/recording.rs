@@ -8,6 +8,7 @@ use crate::machine::{
 };
 use crate::plot::{PortLanguage, plot_on_port};
 use crate::shared::{WorkShown, at};
+use plotter_motion::config::DcConfig;
 use plotter_motion::{Machine, PenMove, config::MachineKind};
 use plotter_replay::{BenchRecorder, PlotterSettings, VirtualPlotter, log, log::Header};
 use std::path::Path;
@@ -62,11 +63,12 @@ fn clock_bits() -> u16 {
 /// What a log says of its line: that of the published protocol, or of the reliable link.
 fn line_header(machine: &Machine, may_be_linked: bool) -> Header {
     let config = machine.config();
+    let dc = DcConfig::of(machine);
     Header::new()
         .with_number("baud", config.serial.baud.into())
         .with_text("protocol", if may_be_linked { "link" } else { "digits" })
-        .with_decimal("x_mm_per_pulse", 1.0 / config.x.counts_per_mm)
-        .with_decimal("y_mm_per_pulse", 1.0 / config.y.counts_per_mm)
+        .with_decimal("x_mm_per_pulse", 1.0 / dc.x.counts_per_mm)
+        .with_decimal("y_mm_per_pulse", 1.0 / dc.y.counts_per_mm)
 }
 
 /// Draws on the virtual plotter what a recording says.

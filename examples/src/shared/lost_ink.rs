@@ -1,7 +1,7 @@
 //! [`lost_ink`]: ink that a vectorization should have drawn, and did not.
 
 use plotter_vector::{
-    Algorithm, FileRows, Pixel, Progress, TracedSheet, Vectorizer, ink::Unassigned, picture::FileNotes,
+    FileRows, Pixel, Progress, TracedSheet, Vectorizer, ink::Unassigned, picture::FileNotes,
     trace::SheetErrors,
 };
 use std::io::Cursor;
@@ -34,17 +34,15 @@ pub fn lost_ink(
     line_px: Option<u32>,
     is_uneven: bool,
 ) -> Result<(), String> {
-    let promised_px = vectorizer.ours.tolerance_px;
+    let Some(promised_px) = vectorizer.ours().map(|ours| ours.tolerance_px) else { return Ok(()) };
     let widths = if is_uneven { WIDTHS_IF_UNEVEN } else { WIDTHS };
     let most_px = promised_px + widths * f64::from(line_px.unwrap_or(USUAL_LINE_PX).max(1));
     match errors.worst {
-        Some((Pixel { x, y }, error_px)) if vectorizer.algorithm == Algorithm::Ours && error_px > most_px => {
-            Err(format!(
-                "ink at ({x}, {y}) px lies {error_px:.1} px from the nearest stroke, where {promised_px} px were promised: \
+        Some((Pixel { x, y }, error_px)) if error_px > most_px => Err(format!(
+            "ink at ({x}, {y}) px lies {error_px:.1} px from the nearest stroke, where {promised_px} px were promised: \
                  something was not drawn there; look at it (`trace --overlay F.png` circles it), then try a scan with more \
                  dots per inch, another threshold, or another greatest width of lines (`trace --max-line-px`)"
-            ))
-        }
+        )),
         _ => Ok(()),
     }
 }
@@ -80,7 +78,7 @@ pub fn vectorized(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use plotter_vector::stroke::Bounded;
+    use plotter_vector::Ours;
 
     fn errors(error_px: f64) -> SheetErrors {
         SheetErrors { worst: Some((Pixel::new(12, 34), error_px)), ..SheetErrors::default() }
@@ -88,7 +86,7 @@ mod tests {
 
     #[test]
     fn ink_a_lines_width_beyond_the_promise_is_lost_and_said_with_its_place() {
-        let within_half = Vectorizer { ours: Bounded { tolerance_px: 0.5 }, ..Vectorizer::default() };
+        let within_half = Vectorizer::from(Ours::default().with_tolerance_px(0.5));
         assert_eq!(lost_ink(&within_half, &errors(3.5), Some(3), false), Ok(()));
         // The far edge of a line that was not drawn beside one that was: a width and a pixel.
         let said = lost_ink(&within_half, &errors(4.0), Some(3), false).unwrap_err();
@@ -109,7 +107,7 @@ mod tests {
 
     #[test]
     fn the_published_algorithm_promises_nothing() {
-        let published = Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() };
+        let published = Vectorizer::published();
         assert_eq!(lost_ink(&published, &errors(50.0), Some(1), false), Ok(()));
     }
 }

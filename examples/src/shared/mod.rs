@@ -14,7 +14,6 @@ mod report;
 mod telling;
 mod told_ink;
 mod told_spots;
-mod vectorize_settings;
 mod work_shown;
 
 pub use command::{at, print, run};
@@ -32,5 +31,4 @@ pub use report::{Figure, html_page};
 pub use telling::Telling;
 pub use told_ink::{assumed, told_ink};
 pub(crate) use told_spots::{told_bare, told_insides};
-pub use vectorize_settings::vectorizer;
 pub use work_shown::WorkShown;

@@ -7,6 +7,7 @@ use crate::drawings::{Diagnostic, Diagnostics, DrawingFile, Severity};
 use crate::machine::{BLOCKS, SteppedPlot};
 use crate::shared::{at, read_file, write_file};
 use crate::stepper::{DrawnExtent, PlotFigures, SpeedChart, StepFile, SteppedPreview, SteppedReport};
+use plotter_motion::config::SteppersConfig;
 use plotter_motion::{
     Machine, MachineConfig, PathMode, Pen, PlannerSettings, Point,
     config::{AccelChoice, JerkChoice, MachineKind},
@@ -24,12 +25,13 @@ pub(super) fn plot(arguments: &StepperCommand) -> Result<(), String> {
     let mut said = Diagnostics::default();
     let (machine, settings) = machine(arguments, &mut said)?;
     let config = machine.config();
+    let steppers = SteppersConfig::of(&machine);
     let motor = |stepper: &plotter_motion::config::StepperConfig| MotorScale {
         steps_per_mm: arguments.steps_per_mm.unwrap_or(stepper.steps_per_mm),
         // Which way a motor turns does not matter to the picture.
         inverted: false,
     };
-    let motors = [motor(&config.x.stepper), motor(&config.y.stepper)];
+    let motors = [motor(&steppers.x), motor(&steppers.y)];
     let finest = motors[0].steps_per_mm.max(motors[1].steps_per_mm);
     let ops = drawing.ops(arguments.drawing.reading())?;
     let settings = PlannerSettings { resolution_mm: 0.5 / finest, allowance_mm: 1.0 / finest, ..settings };
@@ -125,17 +127,19 @@ pub(super) fn machine(
         None => Machine::new(MachineConfig::stepper_plotter()).map_err(|error| error.to_string())?,
     };
     let config = machine.config();
+    let steppers = SteppersConfig::of(&machine);
     let mut settings = PlannerSettings::of(&machine);
     if let Some([x, y]) = arguments.accel_axes.as_deref() {
         let mut limited = *config;
-        let planner = &mut limited.planner;
-        (planner.accel_limit, planner.accel_x_mm_s2, planner.accel_y_mm_s2) = (AccelChoice::Axes, *x, *y);
+        if let Some(SteppersConfig { planner, .. }) = limited.steppers_mut() {
+            (planner.accel_limit, planner.accel_x_mm_s2, planner.accel_y_mm_s2) = (AccelChoice::Axes, *x, *y);
+        }
         settings = PlannerSettings::of(&Machine::new(limited).map_err(|error| error.to_string())?);
     }
     if arguments.accel.is_some() {
         settings.accel_limit = AccelLimit::Vector;
     }
-    let tolerance_mm = arguments.tolerance_mm.unwrap_or(config.planner.path_tolerance_mm);
+    let tolerance_mm = arguments.tolerance_mm.unwrap_or(steppers.planner.path_tolerance_mm);
     match (arguments.mode, arguments.tolerance_mm) {
         (Some(Mode::Exact), _) => settings.path = PathMode::Exact,
         (Some(Mode::Tolerance), _) | (None, Some(_)) => {
@@ -144,7 +148,7 @@ pub(super) fn machine(
         (None, None) => {}
     }
     // As in a machine's file: it is the vector within a tolerance, if nothing else is said.
-    settings.jerk_limit = match (arguments.jerk_limit, settings.path, config.planner.jerk_limit) {
+    settings.jerk_limit = match (arguments.jerk_limit, settings.path, steppers.planner.jerk_limit) {
         (Some(Limit::Vector), ..) => JerkLimit::Vector,
         (Some(Limit::Path), ..) | (None, PathMode::Exact, _) | (None, _, Some(JerkChoice::Path)) => {
             JerkLimit::Path
@@ -153,7 +157,7 @@ pub(super) fn machine(
     };
     if let Some(speed_mm_s) = arguments.max_speed {
         (settings.speed_mm_s, settings.travel_speed_mm_s) = (speed_mm_s, speed_mm_s);
-        let stepper = &config.x.stepper;
+        let stepper = &steppers.x;
         let rate_hz = speed_mm_s * arguments.steps_per_mm.unwrap_or(stepper.steps_per_mm);
         if rate_hz > stepper.max_rate_hz {
             said.push(Diagnostic::new(
@@ -168,8 +172,8 @@ pub(super) fn machine(
     }
     settings.accel_mm_s2 = arguments.accel.unwrap_or(settings.accel_mm_s2);
     settings.junction_deviation_mm = arguments.junction_deviation.unwrap_or(settings.junction_deviation_mm);
-    if arguments.s_curve || config.planner.s_curve {
-        settings.jerk_mm_s3 = Some(arguments.jerk.unwrap_or(config.planner.jerk_mm_s3));
+    if arguments.s_curve || steppers.planner.s_curve {
+        settings.jerk_mm_s3 = Some(arguments.jerk.unwrap_or(steppers.planner.jerk_mm_s3));
     } else if arguments.jerk.is_some() || arguments.jerk_limit.is_some() {
         said.push(Diagnostic::new(
             Severity::Notice,

@@ -254,8 +254,11 @@ pub(super) fn trace(arguments: &TraceCommand, stopped: &mut bool) -> Result<(), 
     }
     let mut settings = settings.in_size(asked.of(&notes, UsualSize::MmPerPx(MM_PER_PX))?, page)?;
     // A photograph's rims are ragged, in even light, too: ink that is bare there is worth no stroke.
-    if paper.is_some() && arguments.prefer.is_none() {
-        settings.vectorizer.prefer = Prefer::Strokes;
+    if paper.is_some()
+        && arguments.prefer.is_none()
+        && let Some(ours) = settings.vectorizer.ours_mut()
+    {
+        ours.prefer = Prefer::Strokes;
     }
     let work = || {
         let traced = match (&settings.pens, &input) {

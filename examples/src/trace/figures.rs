@@ -4,7 +4,7 @@ use super::settings::Settings;
 use super::traced::Traced;
 use crate::shared::{Paper, PaperReport, PictureSize, assumed, told_bare, told_insides, told_notes};
 use plotter_vector::{
-    Algorithm, Drawing, ErrorReport,
+    Drawing, ErrorReport,
     picture::{FileNotes, Ground},
     report::{Bin, Spots},
     trace::SheetErrors,
@@ -57,7 +57,7 @@ impl<'a> Report<'a> {
     pub(super) fn new(settings: &Settings, traced: &'a Traced) -> Self {
         let drawing = &traced.drawing;
         let errors: Option<&ErrorReport> = traced.errors.as_ref().map(|errors| &errors.report);
-        let ours = settings.vectorizer.algorithm == Algorithm::Ours;
+        let ours = settings.vectorizer.ours();
         let mut told = vec![("size", settings.size.told())];
         told.extend(told_notes(&traced.notes));
         told.extend(traced.ink.iter().cloned());
@@ -66,7 +66,7 @@ impl<'a> Report<'a> {
             paper: traced.paper.as_ref().map(Paper::report),
             assumed: assumed(&told),
             told,
-            mode: ours.then_some(settings.vectorizer.mode),
+            mode: ours.map(|ours| ours.mode),
             pens: traced.palette.pens().iter().map(|pen| pen_report(pen, drawing)).collect(),
             vertices: drawing.vertices(),
             strokes: drawing.strokes().len(),
@@ -80,13 +80,13 @@ impl<'a> Report<'a> {
                 max_px: beyond.max_px,
                 at: beyond.worst.map(|at| [at.x, at.y]),
             }),
-            kept: traced.errors.as_ref().filter(|_| ours).map(|errors| {
+            kept: traced.errors.as_ref().zip(ours).map(|(errors, ours)| {
                 traced.removed.removed_marks == 0
                     && traced.left_out == 0
-                    && errors.are_within(settings.vectorizer.ours.tolerance_px)
+                    && errors.are_within(ours.tolerance_px)
             }),
-            bare: traced.errors.as_ref().filter(|_| ours).map(|errors| errors.bare.clone()),
-            areas: traced.errors.as_ref().filter(|_| ours).map(|errors| errors.insides.clone()),
+            bare: traced.errors.as_ref().filter(|_| ours.is_some()).map(|errors| errors.bare.clone()),
+            areas: traced.errors.as_ref().filter(|_| ours.is_some()).map(|errors| errors.insides.clone()),
             dirt: Dirt {
                 marks: traced.removed.removed_marks,
                 px: traced.removed.removed_px,

@@ -1,14 +1,14 @@
 //! The settings of a trace, from its options and the machine's file.
 
 use super::command::{Choice, ModeChoice, OrderChoice, PreferChoice, RulingChoice, TraceCommand};
-use crate::shared::{PictureSize, at, read_file, vectorizer};
-use plotter_motion::{
-    Machine,
-    config::{PensChoice, PiecesChoice, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode},
-};
+use crate::shared::{PictureSize, at, read_file};
+use plotter_motion::Machine;
 use plotter_vector::{
-    Algorithm, Palette, Prefer, ThresholdMethod, Vectorizer,
-    ink::{MAX_PENS, Pens},
+    Mode, Palette, Prefer, Vectorizer,
+    ink::{MAX_PENS, Pens, ThresholdMethodError},
+    order::OrderEffort,
+    stroke::Pieces,
+    trace::{PensChoice, VectorizeConfig},
 };
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -53,10 +53,10 @@ impl Unscaled {
     pub(super) fn in_size(self, size: PictureSize, page: u32) -> Result<Settings, String> {
         let Self { mut vectorizer, config, pens, threads, overlay, gap_mm, min_stroke_mm, keep_pale } = self;
         vectorizer.threshold.keep_pale = keep_pale;
-        vectorizer.gap_px = gap_mm.map(|gap_mm| gap_mm / size.mm_per_px);
-        vectorizer.min_stroke_px = min_stroke_mm / size.mm_per_px;
-        if vectorizer.algorithm == Algorithm::Ours {
-            vectorizer.areas = self::vectorizer(&config, size.mm_per_px)?.areas;
+        if let Some(ours) = vectorizer.ours_mut() {
+            ours.gap_px = gap_mm.map(|gap_mm| gap_mm / size.mm_per_px);
+            ours.min_stroke_px = min_stroke_mm / size.mm_per_px;
+            ours.areas = config.ours(size.mm_per_px).map_err(|error| error.to_string())?.areas;
         }
         Ok(Settings { vectorizer, pens, threads, overlay, size, page })
     }
@@ -68,7 +68,7 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Unscaled, String> {
         Some(path) => {
             let text = String::from_utf8(read_file(path)?)
                 .map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
-            Machine::from_toml(&text).map_err(|error| at(path, &error))?.config().vectorize
+            Machine::from_toml_with(&text).map_err(|error| at(path, &error))?.1
         }
         None => VectorizeConfig::default(),
     };
@@ -83,12 +83,7 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Unscaled, String> {
     let (gap_mm, min_stroke_mm) = (arguments.gap, arguments.min_stroke.unwrap_or(0.0));
     let keep_pale = arguments.ruling == Some(RulingChoice::Keep);
     if let Some(text) = &arguments.threshold {
-        config.threshold = match text.parse::<ThresholdMethod>().map_err(|error| format!("--{error}"))? {
-            ThresholdMethod::Auto => ThresholdChoice::Auto,
-            ThresholdMethod::Otsu => ThresholdChoice::Otsu,
-            ThresholdMethod::Adaptive => ThresholdChoice::Adaptive,
-            ThresholdMethod::Level(level) => ThresholdChoice::Level(level),
-        };
+        config.threshold = text.parse().map_err(|error: ThresholdMethodError| format!("--{error}"))?;
     }
     let in_file = Some(i64::from(config.threads)).filter(|number| *number > 0);
     let threads = arguments.threads.or(in_file).map(threads).transpose()?;
@@ -97,9 +92,7 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Unscaled, String> {
     let overlay = arguments.overlay.clone().or(in_file);
     if matches!(arguments.algorithm, Choice::Published) {
         refuse_ours(arguments)?;
-        let threshold =
-            vectorizer(&VectorizeConfig { threshold: config.threshold, ..Default::default() }, 1.0)?;
-        let vectorizer = Vectorizer { algorithm: Algorithm::Published, ..threshold };
+        let vectorizer = Vectorizer::published().with_threshold(config.threshold());
         return Ok(Unscaled {
             vectorizer,
             config,
@@ -124,9 +117,9 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Unscaled, String> {
         given => config.max_error_px = given.unwrap_or(config.max_error_px),
     }
     if arguments.arcs {
-        config.pieces = PiecesChoice::Arcs;
+        config.pieces = Pieces::Arcs;
     } else if arguments.curves {
-        config.pieces = PiecesChoice::Cubics;
+        config.pieces = Pieces::Cubics;
     }
     match arguments.hatch {
         Some(bad) if !(bad >= 0.0 && bad.is_finite()) => {
@@ -137,7 +130,7 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Unscaled, String> {
         Some(hatch_mm) => {
             config.hatch_mm = hatch_mm;
             if hatch_mm > 0.0 {
-                config.mode = VectorizeMode::Mixed;
+                config.mode = Mode::Mixed;
             }
         }
         None => {}
@@ -151,15 +144,15 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Unscaled, String> {
         given => config.pen_mm = given.unwrap_or(config.pen_mm),
     }
     match arguments.mode {
-        Some(ModeChoice::Centreline) => config.mode = VectorizeMode::Centreline,
-        Some(ModeChoice::Outline) => config.mode = VectorizeMode::Outline,
-        Some(ModeChoice::Mixed) => config.mode = VectorizeMode::Mixed,
+        Some(ModeChoice::Centreline) => config.mode = Mode::Centreline,
+        Some(ModeChoice::Outline) => config.mode = Mode::Outline,
+        Some(ModeChoice::Mixed) => config.mode = Mode::Mixed,
         None => {}
     }
     match arguments.order {
-        Some(OrderChoice::None) => config.order = StrokeOrder::None,
-        Some(OrderChoice::Fast) => config.order = StrokeOrder::Fast,
-        Some(OrderChoice::Best) => config.order = StrokeOrder::Best,
+        Some(OrderChoice::None) => config.order = OrderEffort::None,
+        Some(OrderChoice::Fast) => config.order = OrderEffort::Fast,
+        Some(OrderChoice::Best) => config.order = OrderEffort::Best,
         None => {}
     }
     if let Some(given) = arguments.max_line_px {
@@ -178,8 +171,10 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Unscaled, String> {
         Some(PreferChoice::Ink) => Prefer::Ink,
     };
     // What is in mm waits for the picture's size.
-    let unscaled = VectorizeConfig { hatch_mm: 0.0, pen_mm: 0.0, ..config };
-    let vectorizer = Vectorizer { prefer, ..vectorizer(&unscaled, 1.0)? };
+    let mut unscaled = config;
+    (unscaled.hatch_mm, unscaled.pen_mm) = (0.0, 0.0);
+    let ours = unscaled.ours(1.0).map_err(|error| error.to_string())?.with_prefer(prefer);
+    let vectorizer = Vectorizer::from(ours).with_threshold(config.threshold());
     Ok(Unscaled { vectorizer, config, pens, threads, overlay, gap_mm, min_stroke_mm, keep_pale })
 }
 

@@ -3,6 +3,7 @@
 use crate::shared::{Telling, at, read_file, run, write_file};
 use crate::tune::{TunedAxis, TuningMethod, TuningReport, TuningSettings, loop_charts_svg, tuned_lines};
 use clap::{Parser, ValueEnum};
+use plotter_motion::config::DcConfig;
 use plotter_motion::{Axis, Machine, MachineConfig, config::MachineKind};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -125,7 +126,8 @@ impl TuneCommand {
 fn tune(arguments: &TuneCommand) -> Result<(), String> {
     let machine = machine(arguments)?;
     let config = machine.config();
-    let loop_hz = arguments.loop_hz.unwrap_or(config.control.contouring.loop_hz);
+    let dc = DcConfig::of(&machine);
+    let loop_hz = arguments.loop_hz.unwrap_or(dc.control.contouring.loop_hz);
     let settings = TuningSettings {
         method: arguments.method,
         max_sensitivity: arguments.margin,

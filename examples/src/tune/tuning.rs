@@ -8,7 +8,7 @@ use plotter_motion::control::tuning::{
 };
 use plotter_motion::{
     Axis, MachineConfig,
-    config::AxisConfig,
+    config::{AxisConfig, DcConfig},
     control::{Pid, SumPid},
 };
 use std::f64::consts::TAU;
@@ -106,9 +106,10 @@ impl TunedAxis {
     /// Tries all that is asked for on a motor of the machine.
     #[must_use]
     pub fn new(settings: &TuningSettings, config: &MachineConfig, axis: Axis) -> Self {
+        let dc = config.dc().copied().unwrap_or_default();
         let (described, length_mm) = match axis {
-            Axis::X => (config.x, config.area.width_mm),
-            Axis::Y => (config.y, config.area.height_mm),
+            Axis::X => (dc.x, config.area.width_mm),
+            Axis::Y => (dc.y, config.area.height_mm),
         };
         let truth = true_axis(&described, settings.motor_off);
         let tick_s = 1.0 / settings.loop_hz;
@@ -139,16 +140,16 @@ impl TunedAxis {
                 &described,
                 &process,
                 tick_s,
-                config.control.contouring.bandwidth_hz,
-                config.control.contouring.observer_hz,
+                dc.control.contouring.bandwidth_hz,
+                dc.control.contouring.observer_hz,
             ),
         };
-        tuned.try_all(settings, config, plant);
+        tuned.try_all(settings, &dc, plant);
         tuned
     }
 
-    fn try_all(&mut self, settings: &TuningSettings, config: &MachineConfig, plant: SimulatedAxis) {
-        let published = &config.control.published;
+    fn try_all(&mut self, settings: &TuningSettings, dc: &DcConfig, plant: SimulatedAxis) {
+        let published = &dc.control.published;
         let (kd, limit) = match self.axis {
             Axis::X => (published.kd_x, published.duty_limit_x),
             Axis::Y => (published.kd_y, published.duty_limit_y),

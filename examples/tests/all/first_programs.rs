@@ -47,7 +47,7 @@ fn steps_have_the_times_of_the_law_of_free_fall_and_come_to_their_place() {
     assert_eq!([sum(1), sum(2)], [876.0, 876.0]);
     assert!(steps.is_sorted_by(|a, b| a[0] < b[0]));
     // The first is due after half a step of either motor, from rest.
-    let planner = MachineConfig::stepper_plotter().planner;
+    let planner = MachineConfig::stepper_plotter().steppers().unwrap().planner;
     let way_mm = 0.5 / 87.58 * f64::sqrt(2.0);
     let time_us = 1e6 * f64::sqrt(2.0 * way_mm / planner.accel_mm_s2);
     assert!((steps[0][0] - time_us).abs() < 2.0, "{} us, by hand {time_us}", steps[0][0]);

@@ -208,16 +208,14 @@ fn small(folder: &Path) -> (String, Paper) {
 fn record(windows: &Path, machine: &str, paper: &Paper) -> Vec<PxPoint> {
     let machine = Machine::from_toml(&std::fs::read_to_string(machine).unwrap()).unwrap();
     let mut machine = FollowMachine::new(&machine, 0.1, None, Some([120.0, 90.0])).unwrap();
-    let settings = CameraSettings {
-        width_px: 140,
-        height_px: 120,
-        noise_levels: 2.0,
-        rim_light: 1.0,
-        ..CameraSettings::default()
-    };
+    let settings = CameraSettings::default()
+        .with_width_px(140)
+        .with_height_px(120)
+        .with_noise_levels(2.0)
+        .with_rim_light(1.0);
     let mut camera = SimulatedCamera::new(paper, settings);
     let area = Some(machine.area());
-    let mut follower = MappingFollower::new(MappingSettings { area, ..MappingSettings::default() });
+    let mut follower = MappingFollower::new(MappingSettings::default().with_area(area));
     let mut commands = Vec::new();
     for index in 0..2000 {
         let file = windows.join(format!("{index:04}.png"));

@@ -350,7 +350,10 @@ fn photographs(
             lines.iter().map(|line| (line.iter().map(seen).collect::<Vec<_>>(), 4.0)).collect();
         let paper = Paper::drawn(240, 240, &strokes).unwrap();
         let (width_px, height_px) = (240, 240);
-        let settings = CameraSettings { width_px, height_px, noise_levels: 2.0, ..CameraSettings::default() };
+        let settings = CameraSettings::default()
+            .with_width_px(width_px)
+            .with_height_px(height_px)
+            .with_noise_levels(2.0);
         let window = SimulatedCamera::new(&paper, settings).window(PxPoint::new(120.0, 120.0));
         let picture = image::GrayImage::from_raw(240, 240, window.pixels().to_vec()).unwrap();
         picture.save(folder.join(format!("{number:04}.png"))).unwrap();

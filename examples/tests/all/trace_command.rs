@@ -623,7 +623,8 @@ fn by_rows_and_whole_are_the_same_bytes() {
     for picture in [&names[0], &names[1], &inverted(&names[1])] {
         let whole = plotter_vector::decode(&std::fs::read(picture).unwrap()).unwrap();
         for (pieces, option) in [(Pieces::Lines, &[][..]), (Pieces::Arcs, &["--arcs"])] {
-            let vectorizer = plotter_vector::Vectorizer { pieces, ..Default::default() };
+            let vectorizer =
+                plotter_vector::Vectorizer::from(plotter_vector::Ours::default().with_pieces(pieces));
             let whole = vectorizer.vectorize(&whole).unwrap();
             let mut expected = String::new();
             let palette = plotter_vector::Palette::default();

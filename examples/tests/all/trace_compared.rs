@@ -2,10 +2,10 @@
 
 use crate::papers::{assert_in, row_of};
 use plotter_vector::{
-    Algorithm, Pixel, Threshold, Vectorized, Vectorizer, decode,
+    Ours, Pixel, Threshold, Vectorized, Vectorizer, decode,
     raster::OrderedTracking,
     report::ErrorTally,
-    stroke::{Bounded, Simplify},
+    stroke::{Bounded, DynamicThreshold, Simplify},
 };
 
 /// Mean, greatest error and standard deviation, px.
@@ -19,8 +19,7 @@ const PAPER_TECHNICAL: Figures = [0.0042, 0.5547, 0.0386];
 const ORDER_FLAG: Figures = [0.12, 2.1, 0.25];
 const ORDER_TECHNICAL: Figures = [0.01, 0.6, 0.04];
 
-fn trace(picture: &[u8], algorithm: Algorithm) -> Vectorized {
-    let vectorizer = Vectorizer { algorithm, ..Vectorizer::default() };
+fn trace(picture: &[u8], vectorizer: Vectorizer) -> Vectorized {
     vectorizer.vectorize(&decode(picture).unwrap()).unwrap()
 }
 
@@ -39,7 +38,7 @@ fn row(name: &str, figures: Figures, traced: Option<&Vectorized>) {
 }
 
 fn compare(name: &str, picture: &[u8], paper: Figures, order: Figures) {
-    let (published, ours) = (trace(picture, Algorithm::Published), trace(picture, Algorithm::Ours));
+    let (published, ours) = (trace(picture, Vectorizer::published()), trace(picture, Vectorizer::default()));
     println!("{name:<24} mean px   max px    sd px  vertices  strokes  pen down   pen up");
     row("  the paper's drawing", paper, None);
     row("  published", figures(&published), Some(&published));
@@ -86,7 +85,7 @@ fn on_the_technical_drawing_ours_is_better_in_all_figures_with_no_more_vertices(
 
 #[test]
 fn the_flags_outline_is_closed_and_the_seam_ends_on_it() {
-    let flag = trace(include_bytes!("../../data/flag.png"), Algorithm::Ours).drawing;
+    let flag = trace(include_bytes!("../../data/flag.png"), Vectorizer::default()).drawing;
     let outline = flag.strokes().find(|stroke| stroke.len() == 5).unwrap();
     assert_eq!(outline.first(), outline.last());
     let seam = flag.strokes().find(|stroke| stroke.len() == 2).unwrap();
@@ -112,16 +111,16 @@ fn compare_at_the_published_greatest_error(picture: &[u8]) {
     let figures = OrderedTracking::default().track(&ink).unwrap();
     assert!(figures.len() > 1);
     for figure in figures.iter() {
-        let published = Vectorizer::default().published.keep(figure);
+        let published = DynamicThreshold::default().keep(figure);
         let tolerance_px = greatest_error_px(figure, &published);
-        let ours = Bounded { tolerance_px }.keep(figure);
+        let ours = Bounded::default().with_tolerance_px(tolerance_px).keep(figure);
         assert!(ours.len() <= published.len(), "at {:?}, {tolerance_px} px", figure[0]);
         assert!(greatest_error_px(figure, &ours) <= tolerance_px + ROUNDING_PX, "at {:?}", figure[0]);
     }
 
-    let published = trace(picture, Algorithm::Published);
-    let ours = Bounded { tolerance_px: published.error.max_px };
-    let ours = Vectorizer { ours, ..Vectorizer::default() }.vectorize(&gray).unwrap();
+    let published = trace(picture, Vectorizer::published());
+    let ours = Ours::default().with_tolerance_px(published.error.max_px);
+    let ours = Vectorizer::from(ours).vectorize(&gray).unwrap();
     println!(
         "at {:.4} px: published {} vertices, ours {}",
         published.error.max_px,

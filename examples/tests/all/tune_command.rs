@@ -71,7 +71,7 @@ fn its_lines_can_be_pasted_into_a_machines_file() {
     let lines = report["toml"].as_str().unwrap();
     assert!(text.ends_with(lines), "{text}");
     let pasted = Machine::from_toml(&format!("schema = 1\n{lines}")).unwrap();
-    let contouring = &pasted.config().control.contouring;
+    let contouring = &pasted.config().dc().unwrap().control.contouring;
     let suggested = &report["axes"][0]["contouring_suggested"];
     let bandwidth_hz = number(&suggested["bandwidth_hz"]);
     assert!(contouring.bandwidth_hz <= bandwidth_hz && contouring.bandwidth_hz > bandwidth_hz - 0.11);

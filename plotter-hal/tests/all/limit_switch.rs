@@ -42,7 +42,7 @@ fn shown(pressed: &[bool]) -> String {
 }
 
 fn quick() -> SwitchSettings {
-    SwitchSettings { release_after: Duration::from_millis(4), ..SwitchSettings::default() }
+    SwitchSettings::default().with_release_after(Duration::from_millis(4))
 }
 
 #[test]
@@ -60,7 +60,7 @@ fn a_broken_wire_is_a_pressed_switch_and_stays_one() {
 
 #[test]
 fn a_normally_open_switch_shows_a_press_at_low() {
-    let settings = SwitchSettings { pressed_at: PinState::Low, ..quick() };
+    let settings = quick().with_pressed_at(PinState::Low);
     let was = shown(&watched(settings, levels("^^^^^^__^^^^^^")));
     assert_eq!(was, "^^^^__^^^^^^__");
 }
@@ -69,7 +69,7 @@ fn a_normally_open_switch_shows_a_press_at_low() {
 fn a_spike_is_a_press_unless_it_is_asked_for_more() {
     let spike = "______^_______";
     assert_eq!(shown(&watched(quick(), levels(spike))), "^^^^__^^^^^___");
-    let patient = SwitchSettings { press_after: Duration::from_millis(2), ..quick() };
+    let patient = quick().with_press_after(Duration::from_millis(2));
     assert_eq!(shown(&watched(patient, levels(spike))), "^^^^__________");
     assert_eq!(shown(&watched(patient, levels("______^^^^____"))), "^^^^____^^^^^^");
 }
@@ -89,7 +89,7 @@ fn whichever_read_fails_it_counts_as_pressed_until_it_has_been_free_again() {
 
 #[test]
 fn the_group_reads_all_switches_whichever_fails_and_names_it() {
-    let settings = SwitchSettings { release_after: Duration::ZERO, ..SwitchSettings::default() };
+    let settings = SwitchSettings::default().with_release_after(Duration::ZERO);
     let fault = MockError::Io(ErrorKind::NotConnected);
     let ends = [
         (Axis::X, Direction::Minus, "axis x: pin of its lower limit switch"),

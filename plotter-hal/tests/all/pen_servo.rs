@@ -25,7 +25,7 @@ fn ms(ms: u64) -> Duration {
 }
 
 fn gentle() -> PenServoSettings {
-    PenServoSettings { lowering_deg_s: 500.0, ..PenServoSettings::default() }
+    PenServoSettings::default().with_lowering_deg_s(500.0)
 }
 
 #[expect(clippy::unwrap_used, reason = "a test may panic")]
@@ -133,7 +133,7 @@ fn the_waiting_form_needs_a_delay_and_no_clock() {
         SetDuty::max_duty_cycle(FULL),
         SetDuty::set_duty_cycle(DOWN),
     ]);
-    let settings = PenServoSettings { lowering_deg_s: 1800.0, ..PenServoSettings::default() };
+    let settings = PenServoSettings::default().with_lowering_deg_s(1800.0);
     let mut pen = PenServo::new(pwm, settings).unwrap();
     let mut delay = CheckedDelay::new(&[
         Wait::delay_us(200_000),
@@ -163,16 +163,16 @@ fn settings_that_cannot_be_are_refused_with_what_would_be_right() {
     let good = PenServoSettings::default();
     let point = |deg, pulse_us| ServoPoint { deg, pulse_us };
     let cases = [
-        (PenServoSettings { calibration: [point(0.0, 100.0), point(180.0, 2000.0)], ..good }, FULL),
-        (PenServoSettings { calibration: [point(0.0, f32::NAN), point(180.0, 2000.0)], ..good }, FULL),
-        (PenServoSettings { calibration: [point(90.0, 1000.0), point(95.0, 2000.0)], ..good }, FULL),
-        (PenServoSettings { calibration: [point(0.0, 1500.0), point(180.0, 1500.0)], ..good }, FULL),
-        (PenServoSettings { frame_us: 0, ..good }, FULL),
-        (PenServoSettings { up_deg: 200.0, ..good }, FULL),
-        (PenServoSettings { down_deg: f32::NAN, ..good }, FULL),
-        (PenServoSettings { lowering_deg_s: 0.0, ..good }, FULL),
-        (PenServoSettings { lowering_deg_s: f32::NAN, ..good }, FULL),
-        (PenServoSettings { up_deg: 91.0, ..good }, 1000),
+        (good.with_calibration([point(0.0, 100.0), point(180.0, 2000.0)]), FULL),
+        (good.with_calibration([point(0.0, f32::NAN), point(180.0, 2000.0)]), FULL),
+        (good.with_calibration([point(90.0, 1000.0), point(95.0, 2000.0)]), FULL),
+        (good.with_calibration([point(0.0, 1500.0), point(180.0, 1500.0)]), FULL),
+        (good.with_frame_us(0), FULL),
+        (good.with_up_deg(200.0), FULL),
+        (good.with_down_deg(f32::NAN), FULL),
+        (good.with_lowering_deg_s(0.0), FULL),
+        (good.with_lowering_deg_s(f32::NAN), FULL),
+        (good.with_up_deg(91.0), 1000),
         (good, 0),
     ];
     let mut text = String::new();
@@ -254,7 +254,7 @@ proptest! {
         failing in prop::collection::vec(0..40_usize, 0..4),
     ) {
         let output = Output::failing_at(failing);
-        let settings = PenServoSettings { lowering_deg_s, ..PenServoSettings::default() };
+        let settings = PenServoSettings::default().with_lowering_deg_s(lowering_deg_s);
         let mut pen = pen(&output, settings);
         let mut now = ms(0);
         for (pause_ms, deg) in &orders {

@@ -290,7 +290,7 @@ fn a_phase_on_an_expander_is_named_and_the_position_stays() {
 
 #[test]
 fn a_limit_switch_on_an_expander_that_is_silent_is_pressed() {
-    let settings = SwitchSettings { release_after: Duration::ZERO, ..SwitchSettings::default() };
+    let settings = SwitchSettings::default().with_release_after(Duration::ZERO);
     let ((_, x_min), (_, x_max), (y_min, y_min_pin), (_, y_max)) =
         (on_chip(), on_chip(), on_expander(), on_chip());
     let mut limits = LimitSwitchGroup {

@@ -158,16 +158,14 @@ fn settings_become_registers_by_the_datasheets_tables() {
         ]
     );
     // 1500 mA: 27.1 of 32 in the coarser range, and 600 mA in the same one: 10.8.
-    let strong = Settings {
-        run_ma: 1500,
-        hold_ma: 600,
-        microsteps: 256,
-        interpolates: false,
-        chopper: Chopper::SpreadCycle,
-        stall_threshold: 80,
-        stall_from_hz: 12_000,
-        ..Settings::default()
-    };
+    let strong = Settings::default()
+        .with_run_ma(1500)
+        .with_hold_ma(600)
+        .with_microsteps(256)
+        .with_interpolates(false)
+        .with_chopper(Chopper::SpreadCycle)
+        .with_stall_threshold(80)
+        .with_stall_from_hz(12_000);
     assert_eq!(
         strong.registers().unwrap(),
         [
@@ -183,27 +181,27 @@ fn settings_become_registers_by_the_datasheets_tables() {
 #[test]
 fn a_current_or_a_resolution_that_the_chip_does_not_have_is_refused() {
     // The datasheet's table for 110 mOhm ends at 1.77 A.
-    assert!(Settings { run_ma: 1767, ..Settings::default() }.registers().is_ok());
-    let too_much = Settings { run_ma: 1768, ..Settings::default() };
+    assert!(Settings::default().with_run_ma(1767).registers().is_ok());
+    let too_much = Settings::default().with_run_ma(1768);
     assert_eq!(too_much.registers(), Err(SettingsError::Current { current_ma: 1768, sense_mohm: 110 }));
-    assert!(Settings { sense_mohm: 0, ..Settings::default() }.registers().is_err());
+    assert!(Settings::default().with_sense_mohm(0).registers().is_err());
     for microsteps in [0, 3, 15, 512, 65_535] {
-        let settings = Settings { microsteps, ..Settings::default() };
+        let settings = Settings::default().with_microsteps(microsteps);
         assert_eq!(settings.registers(), Err(SettingsError::Microsteps(microsteps)));
     }
     for (power, microsteps) in [1, 2, 4, 8, 16, 32, 64, 128, 256].into_iter().enumerate() {
-        let [.., (_, chopconf)] = Settings { microsteps, ..Settings::default() }.registers().unwrap();
+        let [.., (_, chopconf)] = Settings::default().with_microsteps(microsteps).registers().unwrap();
         assert_eq!(usize::try_from(chopconf >> 24 & 0xF).unwrap(), 8 - power, "{microsteps}");
     }
     // A motor never holds with more than it steps with.
-    let held = Settings { run_ma: 300, hold_ma: 900, ..Settings::default() };
+    let held = Settings::default().with_run_ma(300).with_hold_ma(900);
     let [_, (_, currents), ..] = held.registers().unwrap();
     assert_eq!(currents & 0x1F, currents >> 8 & 0x1F);
 }
 
 #[test]
 fn a_chip_is_set_over_a_single_wire_and_has_taken_it() {
-    let settings = Settings { stall_threshold: 60, ..Settings::default() };
+    let settings = Settings::default().with_stall_threshold(60);
     let mut chip = Tmc2209::new(Chip::new(Wrong::Nothing), 1);
     chip.configure(&settings, &mut NoopDelay).unwrap();
     assert_eq!(chip.read(Register::Sgthrs, &mut NoopDelay), Ok(60));
@@ -228,14 +226,14 @@ fn whatever_is_wrong_with_a_chip_is_told_and_nothing_waits_for_ever() {
         assert!(error.to_string().starts_with("tmc2209: "), "{error}");
     }
     let mut chip = Tmc2209::new(Chip::new(Wrong::Nothing), 1);
-    let wrong = Settings { microsteps: 5, ..Settings::default() };
+    let wrong = Settings::default().with_microsteps(5);
     assert_eq!(chip.configure(&wrong, &mut NoopDelay), Err(Error::Settings(SettingsError::Microsteps(5))));
     assert_eq!(chip.release().log, [], "nothing has been written");
 }
 
 #[test]
 fn a_stall_is_the_switch_of_the_end_that_the_motor_goes_to() {
-    let settings = SwitchSettings { pressed_at: PinState::High, ..SwitchSettings::default() };
+    let settings = SwitchSettings::default().with_pressed_at(PinState::High);
     let diag = Levels::new([false, false, true].map(Some));
     let mut stall = LimitSwitch::new(diag, settings);
     let mut gate =

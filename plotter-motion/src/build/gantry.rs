@@ -2,6 +2,7 @@
 
 use super::{ALLOWED, literal};
 use crate::Machine;
+use crate::config::DcConfig;
 use crate::config::{AxisConfig, ControllerChoice};
 use crate::control::{ContouringSettings, LineTrackingSettings};
 use crate::firmware::GantrySettings;
@@ -23,13 +24,13 @@ use core::fmt::{self, Write as _};
 ///
 /// None but those of memory, as with `write!`.
 pub fn gantry(machine: &Machine) -> Result<String, fmt::Error> {
-    let config = machine.config();
+    let (baud, config) = (machine.config().serial.baud, DcConfig::of(machine));
     let mut text = String::new();
     writeln!(text, "/// A gantry with DC motors, from its file.\n{ALLOWED}pub mod gantry {{")?;
     writeln!(text, "use plotter_motion::config::*;\nuse plotter_motion::control::*;")?;
     writeln!(text, "use plotter_motion::firmware::GantrySettings;")?;
     writeln!(text, "use plotter_motion::{{MotionLimits, SafetyGate, StepPoint}};")?;
-    writeln!(text, "/// Bits a second of its line.\npub const BAUD: u32 = {};", config.serial.baud)?;
+    writeln!(text, "/// Bits a second of its line.\npub const BAUD: u32 = {};", baud)?;
     writeln!(
         text,
         "/// Steps of the PWM, x and y.\npub const PWM_STEPS: [u16; 2] = [{}, {}];",

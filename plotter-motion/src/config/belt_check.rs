@@ -1,20 +1,20 @@
 //! Checks of settings that must fit together in a machine with one belt.
 
 use super::error::Bound;
-use super::machine::{MAX_COUNTS, demand};
-use super::{ConfigError, Decoding, MachineConfig};
+use super::machine::MAX_COUNTS;
+use super::{AreaConfig, ConfigError, DcConfig, Decoding, OneBeltConfig, PointToPointConfig};
 use core::f64::consts::TAU;
 
 /// Checks a machine whose motors `x` and `y` drive the same belt.
-pub(super) fn check_belt(config: &MachineConfig) -> Result<(), ConfigError> {
-    check_motors(config)?;
-    check_place(config)?;
-    check_drive(config)?;
-    check_rails(config)
+pub(super) fn check_belt(area: &AreaConfig, belt: &OneBeltConfig) -> Result<(), ConfigError> {
+    check_motors(&belt.dc)?;
+    check_place(area, belt)?;
+    check_drive(&belt.point_to_point)?;
+    check_rails(belt)
 }
 
 /// What both motors have in common.
-fn check_motors(config: &MachineConfig) -> Result<(), ConfigError> {
+fn check_motors(config: &DcConfig) -> Result<(), ConfigError> {
     for (key, decoding) in
         [("x.encoder.decoding", config.x.encoder.decoding), ("y.encoder.decoding", config.y.encoder.decoding)]
     {
@@ -35,7 +35,7 @@ fn check_motors(config: &MachineConfig) -> Result<(), ConfigError> {
         ("y.motor.enable_pwm_hz", config.y.motor.enable_pwm_hz),
     ] {
         let remedy = "the simulated motors of a belt brake between their pulses";
-        demand(key, hz, (Bound::AtMost, 0.0), "Hz", remedy)?;
+        ConfigError::demand(key, hz, (Bound::AtMost, 0.0), "Hz", remedy)?;
     }
     let lines = |axis: &super::AxisConfig| f64::from(axis.encoder.lines_per_turn);
     for (key, value, of_x, unit) in [
@@ -43,44 +43,56 @@ fn check_motors(config: &MachineConfig) -> Result<(), ConfigError> {
         ("y.encoder.lines_per_turn", lines(&config.y), lines(&config.x), ""),
     ] {
         let remedy = "both motors drive the same belt: write what x has";
-        demand(key, value, (Bound::AtLeast, of_x), unit, remedy)?;
-        demand(key, value, (Bound::AtMost, of_x), unit, remedy)?;
+        ConfigError::demand(key, value, (Bound::AtLeast, of_x), unit, remedy)?;
+        ConfigError::demand(key, value, (Bound::AtMost, of_x), unit, remedy)?;
     }
     Ok(())
 }
 
 /// Area and start.
-fn check_place(config: &MachineConfig) -> Result<(), ConfigError> {
+fn check_place(area: &AreaConfig, belt: &OneBeltConfig) -> Result<(), ConfigError> {
     // From one corner to the other across, one motor alone makes x + y.
-    let farthest_mm = MAX_COUNTS / config.x.counts_per_mm;
-    demand(
+    let farthest_mm = MAX_COUNTS / belt.dc.x.counts_per_mm;
+    ConfigError::demand(
         "area.width_mm",
-        config.area.width_mm,
-        (Bound::AtMost, farthest_mm - config.area.height_mm),
+        area.width_mm,
+        (Bound::AtMost, farthest_mm - area.height_mm),
         "mm",
         "a motor of a belt turns by width and height together, and up to 99999 counts are reckoned with: make the area \
          smaller or counts_per_mm less",
     )?;
     let inside = "that is the area: the pen is inside when the machine is switched on";
-    demand("belt.start_x_mm", config.belt.start_x_mm, (Bound::AtMost, config.area.width_mm), "mm", inside)?;
-    demand("belt.start_y_mm", config.belt.start_y_mm, (Bound::AtMost, config.area.height_mm), "mm", inside)
+    ConfigError::demand(
+        "belt.start_x_mm",
+        belt.belt.start_x_mm,
+        (Bound::AtMost, area.width_mm),
+        "mm",
+        inside,
+    )?;
+    ConfigError::demand(
+        "belt.start_y_mm",
+        belt.belt.start_y_mm,
+        (Bound::AtMost, area.height_mm),
+        "mm",
+        inside,
+    )
 }
 
-fn check_drive(config: &MachineConfig) -> Result<(), ConfigError> {
-    demand(
+fn check_drive(config: &PointToPointConfig) -> Result<(), ConfigError> {
+    ConfigError::demand(
         "point_to_point.drive_start",
-        config.point_to_point.drive_start,
-        (Bound::AtMost, config.point_to_point.drive_most),
+        config.drive_start,
+        (Bound::AtMost, config.drive_most),
         "",
         "that is point_to_point.drive_most, which the drive grows to",
     )
 }
 
-fn check_rails(config: &MachineConfig) -> Result<(), ConfigError> {
+fn check_rails(config: &OneBeltConfig) -> Result<(), ConfigError> {
     let belt = &config.belt;
     // How far the pen goes along an axis for a radian of one motor, m.
-    let m_per_rad = config.x.counts_per_turn() / TAU / config.x.counts_per_mm / 1000.0 / 2.0;
-    let push_n = [&config.x, &config.y].map(|axis| {
+    let m_per_rad = config.dc.x.counts_per_turn() / TAU / config.dc.x.counts_per_mm / 1000.0 / 2.0;
+    let push_n = [&config.dc.x, &config.dc.y].map(|axis| {
         let stall_n_m = axis.motor.torque_n_m_per_a * axis.motor.supply_v / axis.motor.resistance_ohm;
         (stall_n_m - axis.load.static_n_m) / m_per_rad
     });
@@ -90,16 +102,16 @@ fn check_rails(config: &MachineConfig) -> Result<(), ConfigError> {
         ("belt.y_rail_static_n", belt.y_rail_static_n, belt.y_rail_coulomb_n),
     ] {
         let remedy = "friction at rest is never less than that in motion";
-        demand(key, at_rest_n, (Bound::AtLeast, sliding_n), "N", remedy)?;
+        ConfigError::demand(key, at_rest_n, (Bound::AtLeast, sliding_n), "N", remedy)?;
         let remedy = "the force of both stalled motors, or the carriage never starts";
-        demand(key, at_rest_n, (Bound::LessThan, most_n), "N", remedy)?;
+        ConfigError::demand(key, at_rest_n, (Bound::LessThan, most_n), "N", remedy)?;
     }
     Ok(())
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::{ConfigError, Machine, MachineConfig, config::DriveChoice};
+    use crate::{ConfigError, Machine, MachineConfig};
     use std::string::ToString;
 
     fn refusal(change: fn(&mut MachineConfig)) -> ConfigError {
@@ -125,30 +137,32 @@ mod tests {
 
     #[test]
     fn what_contradicts_itself_on_a_belt_is_named() {
-        assert_eq!(refusal(|c| c.y.counts_per_mm = 46.0).key(), "y.counts_per_mm");
-        assert_eq!(refusal(|c| c.y.encoder.lines_per_turn = 24).key(), "y.encoder.lines_per_turn");
-        assert_eq!(refusal(|c| c.belt.start_y_mm = 200.5).key(), "belt.start_y_mm");
-        assert_eq!(refusal(|c| c.point_to_point.drive_start = 0.5).key(), "point_to_point.drive_start");
-        assert_eq!(refusal(|c| c.belt.x_rail_static_n = 5.0).key(), "belt.x_rail_static_n");
-        assert_eq!(refusal(|c| c.belt.y_rail_static_n = 5_000.0).key(), "belt.y_rail_static_n");
-        // 12 V turn the second motor at 67.3 mm/s of its belt: 47.6 mm/s along a diagonal.
-        assert_eq!(refusal(|c| c.control.contouring.feed_mm_s = 48.0).key(), "y.motor.supply_v");
+        assert_eq!(refusal(|c| c.dc_mut().unwrap().y.counts_per_mm = 46.0).key(), "y.counts_per_mm");
         assert_eq!(
-            refusal(|c| c.drive = DriveChoice::Stepper).to_string(),
-            "kinematics.type: \"corexy\" does not go with drive = \"stepper\", whose controller moves each axis by its own \
-             motor: write \"cartesian\", or drive = \"dc\" for the motors of a belt"
+            refusal(|c| c.dc_mut().unwrap().y.encoder.lines_per_turn = 24).key(),
+            "y.encoder.lines_per_turn"
+        );
+        assert_eq!(refusal(|c| c.belt_mut().unwrap().belt.start_y_mm = 200.5).key(), "belt.start_y_mm");
+        assert_eq!(
+            refusal(|c| c.belt_mut().unwrap().point_to_point.drive_start = 0.5).key(),
+            "point_to_point.drive_start"
         );
         assert_eq!(
-            refusal(|c| c.x.encoder.decoding = crate::config::Decoding::X4).key(),
+            refusal(|c| c.belt_mut().unwrap().belt.x_rail_static_n = 5.0).key(),
+            "belt.x_rail_static_n"
+        );
+        assert_eq!(
+            refusal(|c| c.belt_mut().unwrap().belt.y_rail_static_n = 5_000.0).key(),
+            "belt.y_rail_static_n"
+        );
+        // 12 V turn the second motor at 67.3 mm/s of its belt: 47.6 mm/s along a diagonal.
+        assert_eq!(
+            refusal(|c| c.dc_mut().unwrap().control.contouring.feed_mm_s = 48.0).key(),
+            "y.motor.supply_v"
+        );
+        assert_eq!(
+            refusal(|c| c.dc_mut().unwrap().x.encoder.decoding = crate::config::Decoding::X4).key(),
             "x.encoder.decoding"
         );
-    }
-
-    #[test]
-    fn a_cartesian_machine_reads_no_belt() {
-        let mut gantry = MachineConfig::default();
-        gantry.belt.start_x_mm = 1_000.0;
-        gantry.y.counts_per_mm = 20.0;
-        assert!(Machine::new(gantry).is_ok());
     }
 }

@@ -1,14 +1,15 @@
 //! The keys of machines with a belt, with unit, range and what would be right.
 
-use super::rules::{Form, Rule, number};
+use super::Key;
+use super::rules::{MachineKey, number};
 
 const SHARE: &str = "it is a share: 0.1 is a tenth";
 const SIZE_OF_FRICTION: &str = "friction is given as a size, without sign: 0 for none";
 
 /// Keys of `[kinematics]`, `[belt]` and `[point_to_point]`.
-pub(super) static BELT: [Rule; 28] = [
-    Rule { key: "kinematics.type", form: Form::Choice(&["cartesian", "corexy"]) },
-    Rule { key: "kinematics.signs", form: Form::Choice(&["direction-table", "tracking-equations"]) },
+pub(super) static BELT: [MachineKey; 28] = [
+    Key::choice("kinematics.type", &["cartesian", "corexy"]),
+    Key::choice("kinematics.signs", &["direction-table", "tracking-equations"]),
     number(
         "belt.start_x_mm",
         |c| c.belt.start_x_mm,
@@ -30,7 +31,7 @@ pub(super) static BELT: [Rule; 28] = [
         "mm/s",
         "the documented marking board has its full window of 100 ms at 30",
     ),
-    Rule { key: "belt.known_motors", form: Form::Choice(&["each", "mean"]) },
+    Key::choice("belt.known_motors", &["each", "mean"]),
     number(
         "belt.run_down_ms",
         |c| c.belt.run_down_ms,
@@ -84,7 +85,7 @@ pub(super) static BELT: [Rule; 28] = [
         "30 are enough for a small motor with a gear",
     ),
     number("point_to_point.unequal_share", |c| c.point_to_point.unequal_share, (0.0, 1.0), "", SHARE),
-    Rule { key: "point_to_point.equalize", form: Form::Switch },
+    Key::switch("point_to_point.equalize"),
     number(
         "point_to_point.equalizer_time_constant_ms",
         |c| c.point_to_point.equalizer_time_constant_ms,

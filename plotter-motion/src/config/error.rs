@@ -9,8 +9,8 @@ use core::fmt;
 ///
 /// ```
 /// # use plotter_motion::{Machine, MachineConfig, config::SerialConfig};
-/// let serial = SerialConfig { baud: 25, ..SerialConfig::default() };
-/// let refused = Machine::new(MachineConfig { serial, ..MachineConfig::default() }).unwrap_err();
+/// let serial = SerialConfig::default().with_baud(25);
+/// let refused = Machine::new(MachineConfig::default().with_serial(serial)).unwrap_err();
 /// assert_eq!(
 ///     refused.to_string(),
 ///     "serial.baud: 25 baud lies outside 300..=4000000 baud; the documented gantry uses 256000"
@@ -115,6 +115,27 @@ impl fmt::Display for Bound {
 }
 
 impl ConfigError {
+    /// Refuses `value` behind `key` unless it lies on the right side of a limit that other values set, all in
+    /// `unit` (empty for a plain number). NaN lies on no side. `remedy` says where the limit is from and what
+    /// would be right.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError::Conflict`].
+    pub fn demand(
+        key: &'static str,
+        value: f64,
+        (bound, limit): (Bound, f64),
+        unit: &'static str,
+        remedy: &'static str,
+    ) -> Result<(), Self> {
+        if bound.holds(value, limit) {
+            Ok(())
+        } else {
+            Err(Self::Conflict { key, value, bound, limit, unit, remedy })
+        }
+    }
+
     /// The key that is wrong, as written in the TOML file.
     #[must_use]
     pub const fn key(&self) -> &'static str {

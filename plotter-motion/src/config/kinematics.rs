@@ -4,15 +4,14 @@
 //! The defaults are the documented marking board. A machine whose motors each move an axis does not read
 //! `[belt]` and `[point_to_point]`.
 
-use super::{AxisConfig, MachineConfig, MotorConfig};
+use super::{AxisConfig, DcConfig, DriveConfig, Machine, MotorConfig};
 use crate::config::LoadConfig;
 use crate::kinematics::BeltSigns;
 
 /// How the two motors move the pen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
-#[non_exhaustive]
-pub enum KinematicsChoice {
+pub(super) enum KinematicsChoice {
     /// `x` moves the pen to the right and `y` up.
     #[default]
     Cartesian,
@@ -28,12 +27,12 @@ pub enum KinematicsChoice {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
-pub struct KinematicsConfig {
+pub(super) struct KinematicsConfig {
     /// Each its axis, or both by one belt; the key `type`.
     #[cfg_attr(feature = "serde", serde(rename = "type"))]
-    pub kind: KinematicsChoice,
+    pub(super) kind: KinematicsChoice,
     /// Directions of the motors of a belt.
-    pub signs: BeltSigns,
+    pub(super) signs: BeltSigns,
 }
 
 /// Model of the two motors of a belt for a controller with a plan.
@@ -55,6 +54,7 @@ pub enum KnownMotors {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct BeltConfig {
     /// Where the pen is when the machine is switched on, to the right, mm.
     pub start_x_mm: f64,
@@ -104,6 +104,7 @@ impl Default for BeltConfig {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct PointToPointConfig {
     /// Error of an axis at which it gets no drive, mm.
     pub allowed_error_mm: f64,
@@ -164,30 +165,31 @@ impl Default for PointToPointConfig {
     }
 }
 
-impl MachineConfig {
+impl DriveConfig {
     /// How much farther a motor's belt goes than the pen, at most: 1 where each motor moves an axis, √2 along
     /// a diagonal of a machine with one belt, where one motor does it alone.
-    pub(crate) fn motor_mm_per_mm(&self) -> f64 {
-        match self.kinematics.kind {
-            KinematicsChoice::Cartesian => 1.0,
-            KinematicsChoice::CoreXy => core::f64::consts::SQRT_2,
+    pub(super) fn motor_mm_per_mm(&self) -> f64 {
+        match self {
+            Self::Gantry(_) | Self::Steppers(_) => 1.0,
+            Self::Belt(_) => core::f64::consts::SQRT_2,
         }
     }
+}
 
-    /// The description of the two motors as a controller takes them that leads them along a line of *their*
-    /// counts.
+impl Machine {
+    /// The two DC motors as a controller takes them that leads them along a line of *their* counts.
     ///
     /// On a belt a line of the motors is √2 times as long as that of the pen in any direction, so speed,
     /// acceleration and jerk are.
-    pub(crate) fn led_motors(&self) -> Self {
-        let mut led = *self;
-        let times = self.motor_mm_per_mm();
+    pub(crate) fn led_motors(&self) -> DcConfig {
+        let mut led = DcConfig::of(self);
+        let times = self.config().drive.motor_mm_per_mm();
         let contouring = &mut led.control.contouring;
         contouring.feed_mm_s *= times;
         contouring.accel_mm_s2 *= times;
         contouring.jerk_mm_s3 *= times;
-        if self.kinematics.kind == KinematicsChoice::CoreXy && self.belt.known_motors == KnownMotors::Mean {
-            let mean = mean(&self.x, &self.y);
+        if self.config().belt().is_some_and(|belt| belt.belt.known_motors == KnownMotors::Mean) {
+            let mean = mean(&led.x, &led.y);
             (led.x, led.y) = (mean, mean);
         }
         led

@@ -5,16 +5,18 @@ use super::error::Bound;
 use super::rules::rules;
 use super::transmission::check_transmission;
 use super::{
-    AxisConfig, ConfigError, ControllerChoice, DriveChoice, JerkChoice, KinematicsChoice, MachineConfig,
-    PathChoice,
+    AreaConfig, AxisConfig, ConfigError, ContouringConfig, ControlConfig, ControllerChoice, DcConfig,
+    DriveConfig, FileConfig, JerkChoice, MachineConfig, PathChoice, SerialConfig, StepperConfig,
+    SteppersConfig,
 };
+use crate::plant::StepperSettings;
 
 /// A machine whose description has been checked: the only thing that the rest of the crate accepts.
 ///
 /// ```
 /// # use plotter_motion::{Machine, MachineConfig, config::AreaConfig};
 /// let a3 = AreaConfig { width_mm: 420.0, height_mm: 297.0 };
-/// let machine = Machine::new(MachineConfig { area: a3, ..MachineConfig::default() })?;
+/// let machine = Machine::new(MachineConfig::default().with_area(a3))?;
 /// assert_eq!(machine.config().area.width_mm, 420.0);
 /// # Ok::<(), plotter_motion::ConfigError>(())
 /// ```
@@ -54,8 +56,7 @@ impl Machine {
     /// - a jerk that is limited as a vector goes with a tolerance, without a laser or a third axis, and is
     ///   not so small that more steps would have to be averaged than there is room for.
     ///
-    /// Where frames of a long sheet are drawn, each lies in the area with the windows at its borders,
-    /// and the simulated motor has torque up to some rate, more than its friction.
+    /// The simulated motor has torque up to some rate, more than its friction.
     ///
     /// # Errors
     ///
@@ -64,38 +65,28 @@ impl Machine {
         if config.schema != 1 {
             return Err(ConfigError::Schema { found: config.schema });
         }
-        rules().try_for_each(|rule| rule.check(&config))?;
-        check_sheet(&config)?;
-        match config.drive {
-            DriveChoice::Dc => {
-                match config.kinematics.kind {
-                    KinematicsChoice::Cartesian => {
-                        check_area(&config)?;
-                        check_serial(&config)?;
-                    }
-                    KinematicsChoice::CoreXy => check_belt(&config)?,
-                }
-                check_control(&config)?;
-                check_axis(&config.x, &X, &config)?;
-                check_axis(&config.y, &Y, &config)?;
-                check_transmission(&config)?;
+        let file = FileConfig::from(config);
+        rules().try_for_each(|rule| rule.check(&file))?;
+        match &config.drive {
+            DriveConfig::Gantry(dc) => {
+                check_area(&config.area, dc)?;
+                check_serial(&config.serial)?;
+                check_dc(dc, &config.drive)?;
             }
-            DriveChoice::Stepper => {
-                check_cartesian(&config)?;
-                check_stepper_motor(&config)?;
-                check_stepper(&config.x, &X, config.area.width_mm, &config)?;
-                check_stepper(&config.y, &Y, config.area.height_mm, &config)?;
-                check_jerk(&config)?;
+            DriveConfig::Belt(belt) => {
+                check_belt(&config.area, belt)?;
+                check_dc(&belt.dc, &config.drive)?;
+            }
+            DriveConfig::Steppers(steppers) => {
+                check_stepper_motor(&steppers.stepper_motor)?;
+                check_stepper(&steppers.x, &X, config.area.width_mm, steppers)?;
+                check_stepper(&steppers.y, &Y, config.area.height_mm, steppers)?;
+                check_jerk(steppers)?;
                 #[cfg(feature = "third-motor")]
-                check_third_axis(&config)?;
+                check_third_axis(&steppers.z)?;
             }
         }
         Ok(Self { config })
-    }
-
-    /// What leads the motors takes them as this describes them, along lines of their own counts.
-    pub(crate) fn led_motors(&self) -> MachineConfig {
-        self.config.led_motors()
     }
 
     /// The description that was checked.
@@ -114,83 +105,52 @@ const RUNS_PER_POSITION_PERIOD: f64 = 10.0;
 /// Runs of the loop in a period of the estimator: with fewer its discrete form rings.
 const RUNS_PER_OBSERVER_PERIOD: f64 = 4.0;
 
-/// Refuses `value` behind `key` unless it lies on the right side of `limit`.
-pub(super) fn demand(
-    key: &'static str,
-    value: f64,
-    (bound, limit): (Bound, f64),
-    unit: &'static str,
-    remedy: &'static str,
-) -> Result<(), ConfigError> {
-    if bound.holds(value, limit) {
-        Ok(())
-    } else {
-        Err(ConfigError::Conflict { key, value, bound, limit, unit, remedy })
-    }
-}
-
-fn check_area(config: &MachineConfig) -> Result<(), ConfigError> {
-    let width_limit_mm = MAX_COUNTS / config.x.counts_per_mm;
-    let height_limit_mm = MAX_COUNTS / config.y.counts_per_mm;
-    demand(
+fn check_area(area: &AreaConfig, dc: &DcConfig) -> Result<(), ConfigError> {
+    let width_limit_mm = MAX_COUNTS / dc.x.counts_per_mm;
+    let height_limit_mm = MAX_COUNTS / dc.y.counts_per_mm;
+    ConfigError::demand(
         "area.width_mm",
-        config.area.width_mm,
+        area.width_mm,
         (Bound::AtMost, width_limit_mm),
         "mm",
         "the serial protocol carries coordinates up to 99999 counts: make the area smaller or x.counts_per_mm less",
     )?;
-    demand(
+    ConfigError::demand(
         "area.height_mm",
-        config.area.height_mm,
+        area.height_mm,
         (Bound::AtMost, height_limit_mm),
         "mm",
         "the serial protocol carries coordinates up to 99999 counts: make the area smaller or y.counts_per_mm less",
     )
 }
 
-/// A frame and the windows at both of its borders lie in the area.
-fn check_sheet(config: &MachineConfig) -> Result<(), ConfigError> {
-    let sheet = &config.sheet;
-    if sheet.frame_mm <= 0.0 {
-        return Ok(());
-    }
-    demand(
-        "sheet.cut_window_mm",
-        sheet.cut_window_mm,
-        (Bound::AtMost, sheet.begin_mm.min(0.25 * sheet.frame_mm)),
-        "mm",
-        "the frame before and this one both draw there: at most sheet.begin_mm and a quarter of sheet.frame_mm",
-    )?;
-    demand(
-        "sheet.frame_mm",
-        sheet.frame_mm,
-        (Bound::AtMost, config.area.height_mm - sheet.begin_mm - sheet.cut_window_mm),
-        "mm",
-        "the frame ends within the area: area.height_mm less sheet.begin_mm and sheet.cut_window_mm",
-    )
-}
-
-fn check_serial(config: &MachineConfig) -> Result<(), ConfigError> {
-    let byte_ms = 1_000.0 * BITS_PER_BYTE / f64::from(config.serial.baud);
-    demand(
+fn check_serial(serial: &SerialConfig) -> Result<(), ConfigError> {
+    let byte_ms = 1_000.0 * BITS_PER_BYTE / f64::from(serial.baud);
+    ConfigError::demand(
         "serial.resync_gap_ms",
-        config.serial.resync_gap_ms,
-        (Bound::MoreThan, config.serial.byte_gap_ms + byte_ms),
+        serial.resync_gap_ms,
+        (Bound::MoreThan, serial.byte_gap_ms + byte_ms),
         "ms",
         "or every target would be dropped between two bytes: that is serial.byte_gap_ms and one byte's time",
     )
 }
 
-fn check_control(config: &MachineConfig) -> Result<(), ConfigError> {
-    let contouring = &config.control.contouring;
-    demand(
+fn check_dc(dc: &DcConfig, drive: &DriveConfig) -> Result<(), ConfigError> {
+    check_control(&dc.control.contouring)?;
+    check_axis(&dc.x, &X, &dc.control, drive)?;
+    check_axis(&dc.y, &Y, &dc.control, drive)?;
+    check_transmission(dc)
+}
+
+fn check_control(contouring: &ContouringConfig) -> Result<(), ConfigError> {
+    ConfigError::demand(
         "control.contouring.bandwidth_hz",
         contouring.bandwidth_hz,
         (Bound::AtMost, contouring.loop_hz / RUNS_PER_POSITION_PERIOD),
         "Hz",
         "a tenth of control.contouring.loop_hz: run the loop more often or take less bandwidth",
     )?;
-    demand(
+    ConfigError::demand(
         "control.contouring.observer_hz",
         contouring.observer_hz,
         (Bound::AtMost, contouring.loop_hz / RUNS_PER_OBSERVER_PERIOD),
@@ -200,8 +160,8 @@ fn check_control(config: &MachineConfig) -> Result<(), ConfigError> {
 }
 
 /// A jerk that is limited as a vector goes with all else.
-fn check_jerk(config: &MachineConfig) -> Result<(), ConfigError> {
-    let planner = &config.planner;
+fn check_jerk(steppers: &SteppersConfig) -> Result<(), ConfigError> {
+    let planner = &steppers.planner;
     let unfit = |remedy| Err(ConfigError::Unfit { key: "planner.jerk_limit", value: "vector", remedy });
     if planner.mode == PathChoice::Exact && planner.jerk_limit == Some(JerkChoice::Vector) {
         return unfit(
@@ -215,26 +175,26 @@ fn check_jerk(config: &MachineConfig) -> Result<(), ConfigError> {
     if cfg!(not(feature = "averaged-steps")) {
         return unfit("takes the feature averaged-steps of plotter-motion: build with it, or write \"path\"");
     }
-    if config.laser.enabled {
+    if steppers.laser.enabled {
         return unfit(
             "does not go with laser.enabled: the steps are averaged, and the laser's power would not follow; write \"path\"",
         );
     }
     #[cfg(feature = "third-motor")]
-    if config.z.enabled {
+    if steppers.z.enabled {
         return unfit(
             "does not go with z.enabled: the steps are averaged, and the third axis would not follow; write \"path\"",
         );
     }
     #[cfg(feature = "averaged-steps")]
     if let Err(crate::planner::PlanError::Window { jerk_mm_s3, least_mm_s3 }) =
-        crate::PlannerSettings::of(&Machine { config: *config }).check_room(
-            config.x.stepper.steps_per_mm,
-            config.y.stepper.steps_per_mm,
+        crate::PlannerSettings::of_steppers(steppers).check_room(
+            steppers.x.steps_per_mm,
+            steppers.y.steps_per_mm,
             crate::stepgen::AVERAGED_STEPS,
         )
     {
-        return demand(
+        return ConfigError::demand(
             "planner.jerk_mm_s3",
             jerk_mm_s3,
             (Bound::AtLeast, libm::ceil(least_mm_s3)),
@@ -270,36 +230,41 @@ const Y: AxisKeys = AxisKeys {
     area: "area.height_mm",
 };
 
-fn check_axis(axis: &AxisConfig, keys: &AxisKeys, config: &MachineConfig) -> Result<(), ConfigError> {
+fn check_axis(
+    axis: &AxisConfig,
+    keys: &AxisKeys,
+    control: &ControlConfig,
+    drive: &DriveConfig,
+) -> Result<(), ConfigError> {
     let AxisConfig { motor, load, .. } = axis;
-    demand(
+    ConfigError::demand(
         keys.static_friction,
         load.static_n_m,
         (Bound::AtLeast, load.coulomb_n_m),
         "N m",
         "friction at rest is never less than coulomb_n_m, the friction in motion",
     )?;
-    demand(
+    ConfigError::demand(
         keys.static_friction,
         load.static_n_m,
         (Bound::LessThan, motor.torque_n_m_per_a * motor.supply_v / motor.resistance_ohm),
         "N m",
         "the torque of the stalled motor (torque_n_m_per_a * supply_v / resistance_ohm), or it never starts",
     )?;
-    if config.control.controller == ControllerChoice::Contouring {
+    if control.controller == ControllerChoice::Contouring {
         if motor.enable_pwm_hz > 0.0 {
-            demand(
+            ConfigError::demand(
                 keys.enable_pwm,
                 motor.enable_pwm_hz,
-                (Bound::AtLeast, config.control.contouring.loop_hz),
+                (Bound::AtLeast, control.contouring.loop_hz),
                 "Hz",
                 "control.contouring.loop_hz, or a run's drive has no pulse: run the loop less often or the PWM faster",
             )?;
         }
         let counts_per_rad = axis.counts_per_turn() / core::f64::consts::TAU;
-        let motor_mm_s = config.control.contouring.feed_mm_s * config.motor_mm_per_mm();
+        let motor_mm_s = control.contouring.feed_mm_s * drive.motor_mm_per_mm();
         let shaft_rad_s = motor_mm_s * axis.counts_per_mm / counts_per_rad;
-        demand(
+        ConfigError::demand(
             keys.supply,
             motor.supply_v,
             (Bound::MoreThan, shaft_rad_s * motor.back_emf_v_s),
@@ -313,28 +278,15 @@ fn check_axis(axis: &AxisConfig, keys: &AxisKeys, config: &MachineConfig) -> Res
 /// Steps of the far corner: a million short of what 32 bits hold, for play and the way beyond the switches.
 const MAX_STEPS: f64 = 2_146_000_000.0;
 
-fn check_cartesian(config: &MachineConfig) -> Result<(), ConfigError> {
-    match config.kinematics.kind {
-        KinematicsChoice::Cartesian => Ok(()),
-        KinematicsChoice::CoreXy => Err(ConfigError::Unfit {
-            key: "kinematics.type",
-            value: "corexy",
-            remedy: "does not go with drive = \"stepper\", whose controller moves each axis by its own motor: write \
-                     \"cartesian\", or drive = \"dc\" for the motors of a belt",
-        }),
-    }
-}
-
-fn check_stepper_motor(config: &MachineConfig) -> Result<(), ConfigError> {
-    let motor = &config.stepper_motor;
-    demand(
+fn check_stepper_motor(motor: &StepperSettings) -> Result<(), ConfigError> {
+    ConfigError::demand(
         "stepper_motor.max_rate_hz",
         motor.max_rate_hz,
         (Bound::MoreThan, motor.corner_rate_hz),
         "pulses/s",
         "that is stepper_motor.corner_rate_hz, up to which the motor has all its torque",
     )?;
-    demand(
+    ConfigError::demand(
         "stepper_motor.coulomb_n_m",
         motor.coulomb_n_m,
         (Bound::LessThan, motor.holding_n_m),
@@ -344,18 +296,17 @@ fn check_stepper_motor(config: &MachineConfig) -> Result<(), ConfigError> {
 }
 
 #[cfg(feature = "third-motor")]
-fn check_third_axis(config: &MachineConfig) -> Result<(), ConfigError> {
+fn check_third_axis(z: &super::ZConfig) -> Result<(), ConfigError> {
     /// Greatest rate of a motor, pulses/s: what a controller's clock of microseconds gives out evenly.
     const MOST_HZ: f64 = 1e5;
-    let z = &config.z;
     if !z.enabled {
         return Ok(());
     }
     for (key, height_mm) in [("z.up_mm", z.up_mm), ("z.down_mm", z.down_mm)] {
         let remedy = "the axis goes no higher: z.travel_mm";
-        demand(key, height_mm, (Bound::AtMost, z.travel_mm), "mm", remedy)?;
+        ConfigError::demand(key, height_mm, (Bound::AtMost, z.travel_mm), "mm", remedy)?;
     }
-    demand(
+    ConfigError::demand(
         "z.speed_mm_s",
         z.speed_mm_s,
         (Bound::AtMost, MOST_HZ / z.steps_per_mm),
@@ -365,13 +316,12 @@ fn check_third_axis(config: &MachineConfig) -> Result<(), ConfigError> {
 }
 
 fn check_stepper(
-    axis: &AxisConfig,
+    stepper: &StepperConfig,
     keys: &AxisKeys,
     length_mm: f64,
-    config: &MachineConfig,
+    steppers: &SteppersConfig,
 ) -> Result<(), ConfigError> {
-    let stepper = &axis.stepper;
-    demand(
+    ConfigError::demand(
         keys.start_rate,
         stepper.start_rate_hz,
         (Bound::AtMost, stepper.max_rate_hz),
@@ -379,31 +329,31 @@ fn check_stepper(
         "that is the greatest rate of the axis, max_rate_hz",
     )?;
     for (key, rate_hz) in [
-        ("homing.fast_rate_hz", config.homing.fast_rate_hz),
-        ("homing.slow_rate_hz", config.homing.slow_rate_hz),
+        ("homing.fast_rate_hz", steppers.homing.fast_rate_hz),
+        ("homing.slow_rate_hz", steppers.homing.slow_rate_hz),
     ] {
         let remedy = "that is the greatest rate of an axis, stepper.max_rate_hz";
-        demand(key, rate_hz, (Bound::AtMost, stepper.max_rate_hz), "pulses/s", remedy)?;
+        ConfigError::demand(key, rate_hz, (Bound::AtMost, stepper.max_rate_hz), "pulses/s", remedy)?;
     }
     for (key, speed_mm_s) in [
-        ("planner.speed_mm_s", config.planner.speed_mm_s),
-        ("planner.travel_speed_mm_s", config.planner.travel_speed_mm_s),
+        ("planner.speed_mm_s", steppers.planner.speed_mm_s),
+        ("planner.travel_speed_mm_s", steppers.planner.travel_speed_mm_s),
     ] {
         let most_mm_s = stepper.max_rate_hz / stepper.steps_per_mm;
         let remedy = "the greatest speed of an axis (stepper.max_rate_hz / stepper.steps_per_mm)";
-        demand(key, speed_mm_s, (Bound::AtMost, most_mm_s), "mm/s", remedy)?;
+        ConfigError::demand(key, speed_mm_s, (Bound::AtMost, most_mm_s), "mm/s", remedy)?;
     }
-    demand(
+    ConfigError::demand(
         keys.area,
         length_mm,
         (Bound::AtMost, MAX_STEPS / stepper.steps_per_mm),
         "mm",
         "positions are steps of 32 bits: make the area smaller or stepper.steps_per_mm less",
     )?;
-    demand(
+    ConfigError::demand(
         keys.area,
         length_mm,
-        (Bound::AtMost, config.homing.max_travel_mm - 2.0 * config.homing.pull_off_mm),
+        (Bound::AtMost, steppers.homing.max_travel_mm - 2.0 * steppers.homing.pull_off_mm),
         "mm",
         "the area lies between the limit switches: homing.max_travel_mm less homing.pull_off_mm at either end",
     )
@@ -444,7 +394,8 @@ mod tests {
         // 13.4e-3 N m/A * 12 V / 1.9 ohm = 84.63 mN m.
         let axis = |static_n_m| {
             let load = LoadConfig { coulomb_n_m: 1.0e-3, static_n_m, ..LoadConfig::default() };
-            MachineConfig { y: AxisConfig { load, ..AxisConfig::default() }, ..MachineConfig::default() }
+            let y = AxisConfig { load, ..AxisConfig::default() };
+            MachineConfig::from(DcConfig { y, ..DcConfig::default() })
         };
         assert!(Machine::new(axis(1.0e-3)).is_ok());
         assert!(Machine::new(axis(0.0846)).is_ok());
@@ -459,7 +410,7 @@ mod tests {
         let at = |feed_mm_s, controller| {
             let contouring = ContouringConfig { feed_mm_s, ..ContouringConfig::default() };
             let control = ControlConfig { controller, contouring, ..ControlConfig::default() };
-            Machine::new(MachineConfig { control, ..MachineConfig::default() })
+            Machine::new(DcConfig { control, ..DcConfig::default() }.into())
         };
         assert!(at(1_785.0, ControllerChoice::Contouring).is_ok());
         assert_eq!(at(1_787.0, ControllerChoice::Contouring).expect_err("refused").key(), "x.motor.supply_v");
@@ -474,12 +425,12 @@ mod tests {
             refusal(config).to_string()
         };
         assert_eq!(
-            changed(|c| c.planner.travel_speed_mm_s = 100.0),
+            changed(|c| c.steppers_mut().unwrap().planner.travel_speed_mm_s = 100.0),
             "planner.travel_speed_mm_s: 100 mm/s must be at most 91.34505594884678 mm/s; the greatest speed of an \
              axis (stepper.max_rate_hz / stepper.steps_per_mm)"
         );
         assert_eq!(
-            changed(|c| c.y.stepper.start_rate_hz = 9_000.0),
+            changed(|c| c.steppers_mut().unwrap().y.start_rate_hz = 9_000.0),
             "y.stepper.start_rate_hz: 9000 pulses/s must be at most 8000 pulses/s; that is the greatest rate of the \
              axis, max_rate_hz"
         );
@@ -493,29 +444,27 @@ mod tests {
             change(&mut config);
             refusal(config).key()
         };
-        assert_eq!(key_of(|c| c.x.stepper.max_rate_hz = 7_999.0), "homing.fast_rate_hz");
-        assert_eq!(key_of(|c| c.stepper_motor.coulomb_n_m = 0.28), "stepper_motor.coulomb_n_m");
-        assert_eq!(key_of(|c| c.stepper_motor.max_rate_hz = 8_000.0), "stepper_motor.max_rate_hz");
+        assert_eq!(key_of(|c| c.steppers_mut().unwrap().x.max_rate_hz = 7_999.0), "homing.fast_rate_hz");
+        assert_eq!(
+            key_of(|c| c.steppers_mut().unwrap().stepper_motor.coulomb_n_m = 0.28),
+            "stepper_motor.coulomb_n_m"
+        );
+        assert_eq!(
+            key_of(|c| c.steppers_mut().unwrap().stepper_motor.max_rate_hz = 8_000.0),
+            "stepper_motor.max_rate_hz"
+        );
         // 1e5 steps/mm: 2146 million steps are 21.46 m, and 8e9 pulses/s would be no rate
         assert_eq!(
             key_of(|c| {
-                c.x.stepper =
-                    crate::config::StepperConfig { steps_per_mm: 1e5, max_rate_hz: 1e6, ..c.x.stepper };
-                (c.planner.speed_mm_s, c.planner.travel_speed_mm_s) = (10.0, 10.0);
-                (c.area.width_mm, c.homing.max_travel_mm) = (22_000.0, 50_000.0);
+                let x = &mut c.steppers_mut().unwrap().x;
+                (x.steps_per_mm, x.max_rate_hz) = (1e5, 1e6);
+                (
+                    c.steppers_mut().unwrap().planner.speed_mm_s,
+                    c.steppers_mut().unwrap().planner.travel_speed_mm_s,
+                ) = (10.0, 10.0);
+                (c.area.width_mm, c.steppers_mut().unwrap().homing.max_travel_mm) = (22_000.0, 50_000.0);
             }),
             "area.width_mm"
         );
-    }
-
-    #[test]
-    fn a_machine_is_checked_by_its_kind_of_motor_only() {
-        let mut stepper = MachineConfig::stepper_plotter();
-        stepper.y.load.static_n_m = 0.0; // no DC motor would do
-        assert!(Machine::new(stepper).is_ok());
-        assert_eq!(refusal(MachineConfig { drive: DriveChoice::Dc, ..stepper }).key(), "y.load.static_n_m");
-        let mut gantry = MachineConfig::default();
-        gantry.planner.speed_mm_s = 10_000.0;
-        assert!(Machine::new(gantry).is_ok());
     }
 }

@@ -1,72 +1,70 @@
 //! [`MachineConfig`]: a machine's description, with the documented gantry as default.
 
-use super::{
-    BeltConfig, DriveChoice, FollowerConfig, HomingConfig, KinematicsChoice, KinematicsConfig, LaserConfig,
-    MachineName, PenConfig, PlannerConfig, PointToPointConfig, SheetConfig, StepperConfig,
-    TransmissionConfig, VectorizeConfig,
-};
-#[cfg(feature = "third-motor")]
-use super::{SecondMotorConfig, ZConfig};
-use crate::plant::StepperSettings;
+#[cfg(feature = "serde")]
+use super::FileConfig;
+use super::{DriveConfig, MachineName, TransmissionConfig};
 
 /// What a machine's description says, not yet checked: [`Machine::new`](crate::Machine::new) does that.
 ///
+/// What all machines have stands here; what only one kind of motors needs stands in [`MachineConfig::drive`].
 /// The default is the semi-virtual gantry: two small DC motors on an L293D, 40 encoder counts to the
-/// millimetre, so that an encoder count is an HPGL plotter unit. What only a machine with stepper motors
-/// reads defaults to the documented stepper plotter; [`MachineConfig::stepper_plotter`] is that machine.
+/// millimetre, so that an encoder count is an HPGL plotter unit.
+///
+/// As a file it has the tables of `docs/machine-config.md`, of which a machine reads those of its motors.
+///
+/// ```
+/// # use plotter_motion::{MachineConfig, config::DriveConfig};
+/// let mut config = MachineConfig::stepper_plotter();
+/// if let DriveConfig::Steppers(steppers) = &mut config.drive {
+///     steppers.planner.speed_mm_s = 30.0;
+/// }
+/// assert_eq!(config.steppers().map(|steppers| steppers.planner.speed_mm_s), Some(30.0));
+/// assert_eq!(config.dc(), None);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields, default)
+    serde(try_from = "FileConfig", into = "FileConfig")
 )]
+#[non_exhaustive]
 pub struct MachineConfig {
     /// Version of this format: 1.
     pub schema: u32,
     /// Name of the machine.
     pub name: MachineName,
-    /// How the motors are driven.
-    pub drive: DriveChoice,
     /// The reachable area.
     pub area: AreaConfig,
     /// The serial line.
     pub serial: SerialConfig,
-    /// How the motors are led along a line.
-    pub control: ControlConfig,
-    /// When one motor waits for the other.
-    pub sync_stop: SyncStopConfig,
-    /// How moves are planned for stepper motors.
-    pub planner: PlannerConfig,
-    /// The pen of a machine with stepper motors.
-    pub pen: PenConfig,
-    /// Its laser.
-    pub laser: LaserConfig,
-    /// How it finds the ends of its axes.
-    pub homing: HomingConfig,
-    /// A third axis.
-    #[cfg(feature = "third-motor")]
-    pub z: ZConfig,
-    /// Two motors on an axis.
-    #[cfg(feature = "third-motor")]
-    pub second_motor: SecondMotorConfig,
-    /// Its motors, both alike, as they are simulated.
-    pub stepper_motor: StepperSettings,
-    /// How pictures become strokes for it.
-    pub vectorize: VectorizeConfig,
-    /// How drawings longer than the table are drawn.
-    pub sheet: SheetConfig,
-    /// Its camera beside the tool, where it follows lines.
-    pub follower: FollowerConfig,
-    /// How the two motors move the pen.
-    pub kinematics: KinematicsConfig,
-    /// Settings for a machine with one belt only.
-    pub belt: BeltConfig,
-    /// The published controller of such a machine.
-    pub point_to_point: PointToPointConfig,
-    /// First axis: to the right; the first motor of a belt.
-    pub x: AxisConfig,
-    /// Second axis: up; the second motor of a belt.
-    pub y: AxisConfig,
+    /// Its motors, how they move the pen, and how they are led.
+    pub drive: DriveConfig,
+}
+
+impl MachineConfig {
+    /// The same with another [`MachineConfig::name`].
+    #[must_use]
+    pub const fn with_name(self, name: MachineName) -> Self {
+        Self { name, ..self }
+    }
+
+    /// The same with another [`MachineConfig::area`].
+    #[must_use]
+    pub const fn with_area(self, area: AreaConfig) -> Self {
+        Self { area, ..self }
+    }
+
+    /// The same with another [`MachineConfig::serial`].
+    #[must_use]
+    pub const fn with_serial(self, serial: SerialConfig) -> Self {
+        Self { serial, ..self }
+    }
+
+    /// The same with another [`MachineConfig::drive`].
+    #[must_use]
+    pub const fn with_drive(self, drive: DriveConfig) -> Self {
+        Self { drive, ..self }
+    }
 }
 
 /// The reachable area: a rectangle from the origin.
@@ -90,6 +88,7 @@ pub struct AreaConfig {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct SerialConfig {
     /// Bits a second.
     pub baud: u32,
@@ -97,6 +96,26 @@ pub struct SerialConfig {
     pub byte_gap_ms: f64,
     /// A silence inside a target after which the controller drops what it has of it, ms.
     pub resync_gap_ms: f64,
+}
+
+impl SerialConfig {
+    /// The same with another [`SerialConfig::baud`].
+    #[must_use]
+    pub const fn with_baud(self, baud: u32) -> Self {
+        Self { baud, ..self }
+    }
+
+    /// The same with another [`SerialConfig::byte_gap_ms`].
+    #[must_use]
+    pub const fn with_byte_gap_ms(self, byte_gap_ms: f64) -> Self {
+        Self { byte_gap_ms, ..self }
+    }
+
+    /// The same with another [`SerialConfig::resync_gap_ms`].
+    #[must_use]
+    pub const fn with_resync_gap_ms(self, resync_gap_ms: f64) -> Self {
+        Self { resync_gap_ms, ..self }
+    }
 }
 
 /// Controllers of the motors.
@@ -118,6 +137,7 @@ pub enum ControllerChoice {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct ControlConfig {
     /// The controller.
     pub controller: ControllerChoice,
@@ -160,6 +180,7 @@ pub struct PublishedConfig {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct ContouringConfig {
     /// Cruising speed along a line, mm/s.
     pub feed_mm_s: f64,
@@ -194,7 +215,10 @@ pub struct SyncStopConfig {
     pub offset_counts: f64,
 }
 
-/// One axis: encoder, motor and load, or stepper motor.
+/// An axis of a DC motor, or one of the two motors of a belt.
+///
+/// It and its parts are written out as constants of a firmware (feature `build`), so they can be made field by
+/// field outside of this crate, too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -212,8 +236,6 @@ pub struct AxisConfig {
     pub load: LoadConfig,
     /// Simulated transmission between the shaft and the pen.
     pub transmission: TransmissionConfig,
-    /// How it steps, if the machine has stepper motors.
-    pub stepper: StepperConfig,
 }
 
 /// How the two phases of an encoder are counted.
@@ -335,168 +357,6 @@ impl AxisConfig {
     }
 }
 
-impl MachineConfig {
-    /// The documented stepper plotter: a Makeblock XY plotter of 380 x 310 mm, driven by mDraw over 115200
-    /// baud.
-    ///
-    /// ```
-    /// # use plotter_motion::{Machine, MachineConfig, config::DriveChoice};
-    /// let machine = Machine::new(MachineConfig::stepper_plotter())?;
-    /// assert_eq!(machine.config().drive, DriveChoice::Stepper);
-    /// assert_eq!(machine.config().x.stepper.steps_per_mm, 87.58);
-    /// # Ok::<(), plotter_motion::ConfigError>(())
-    /// ```
-    #[must_use]
-    pub fn stepper_plotter() -> Self {
-        Self {
-            name: MachineName::STEPPER_PLOTTER,
-            drive: DriveChoice::Stepper,
-            area: AreaConfig { width_mm: 380.0, height_mm: 310.0 },
-            serial: SerialConfig { baud: 115_200, byte_gap_ms: 0.0, ..SerialConfig::default() },
-            ..Self::default()
-        }
-    }
-
-    /// The documented textile plotter: a flatbed of 2000 x 1000 mm (mechanically 2100 x 1100), over which the
-    /// paper is moved from roll to roll, with drives that take step and direction, up to 10 m/s.
-    ///
-    /// ```
-    /// # use plotter_motion::{Machine, MachineConfig};
-    /// let machine = Machine::new(MachineConfig::textile_plotter())?;
-    /// assert_eq!(machine.config().planner.travel_speed_mm_s, 10_000.0);
-    /// assert_eq!(machine.config().sheet.frame_mm, 950.0);
-    /// # Ok::<(), plotter_motion::ConfigError>(())
-    /// ```
-    #[must_use]
-    pub fn textile_plotter() -> Self {
-        let stepper = StepperConfig {
-            steps_per_mm: 50.0,
-            start_rate_hz: 5_000.0,
-            max_rate_hz: 500_000.0,
-            ..StepperConfig::default()
-        };
-        let axis = AxisConfig { stepper, ..AxisConfig::default() };
-        Self {
-            name: MachineName::TEXTILE_PLOTTER,
-            area: AreaConfig { width_mm: 2_000.0, height_mm: 1_000.0 },
-            planner: PlannerConfig {
-                speed_mm_s: 1_000.0,
-                travel_speed_mm_s: 10_000.0,
-                accel_mm_s2: 20_000.0,
-                jerk_mm_s3: 1_000_000.0,
-                ..PlannerConfig::default()
-            },
-            pen: PenConfig { settle_ms: 50.0, ..PenConfig::default() },
-            homing: HomingConfig {
-                fast_rate_hz: 25_000.0,
-                slow_rate_hz: 2_500.0,
-                pull_off_mm: 50.0,
-                release_mm: 10.0,
-                known_travel_mm: 1_050.0,
-                max_travel_mm: 2_150.0,
-            },
-            stepper_motor: StepperSettings {
-                microsteps: 10,
-                holding_n_m: 10.0,
-                corner_rate_hz: 500_000.0,
-                max_rate_hz: 1_000_000.0,
-                inertia_kg_m2: 0.005,
-                coulomb_n_m: 0.5,
-                viscous_n_m_s: 0.01,
-                ..StepperSettings::default()
-            },
-            sheet: SheetConfig::TEXTILE_PLOTTER,
-            x: axis,
-            y: axis,
-            ..Self::stepper_plotter()
-        }
-    }
-}
-
-impl MachineConfig {
-    /// The documented marking board: two DC motors on one belt, 46.3 pulses to the millimetre, 300 mm by 200
-    /// mm.
-    ///
-    /// The report names no motor: both are the gantry's, which at 24 pulses a turn make 30 mm/s at 5 V, with
-    /// 2e-6 kg m² of gear and pulley, so that a motor at 30 mm/s runs down for 0.6 mm. They differ as two of
-    /// a kind may: the second has a tenth more field, as with weaker and stronger magnets, and half as much
-    /// friction again.
-    ///
-    /// ```
-    /// # use plotter_motion::{Machine, MachineConfig, config::KinematicsChoice};
-    /// let machine = Machine::new(MachineConfig::marking_board())?;
-    /// assert_eq!(machine.config().kinematics.kind, KinematicsChoice::CoreXy);
-    /// assert_eq!(machine.config().x.counts_per_mm, 46.3);
-    /// # Ok::<(), plotter_motion::ConfigError>(())
-    /// ```
-    #[must_use]
-    pub fn marking_board() -> Self {
-        let motor = MotorConfig::default();
-        let load = LoadConfig { inertia_kg_m2: 2.0e-6, ..LoadConfig::default() };
-        let x = AxisConfig {
-            counts_per_mm: 46.3,
-            encoder: EncoderConfig { lines_per_turn: 12, decoding: Decoding::X2 },
-            load,
-            ..AxisConfig::default()
-        };
-        let y = AxisConfig {
-            motor: MotorConfig { back_emf_v_s: 14.7059e-3, torque_n_m_per_a: 14.74e-3, ..motor },
-            load: LoadConfig { coulomb_n_m: 1.95e-3, static_n_m: 2.08e-3, ..load },
-            ..x
-        };
-        let contouring = ContouringConfig {
-            feed_mm_s: 30.0,
-            accel_mm_s2: 200.0,
-            jerk_mm_s3: 3_500.0,
-            loop_hz: 1_000.0,
-            bandwidth_hz: 15.0,
-            observer_hz: 30.0,
-            arrival_tolerance_counts: 0.45,
-            settle_ms: 20.0,
-        };
-        Self {
-            name: MachineName::MARKING_BOARD,
-            area: AreaConfig { width_mm: 300.0, height_mm: 200.0 },
-            control: ControlConfig { contouring, ..ControlConfig::default() },
-            kinematics: KinematicsConfig { kind: KinematicsChoice::CoreXy, ..KinematicsConfig::default() },
-            x,
-            y,
-            ..Self::default()
-        }
-    }
-}
-
-impl Default for MachineConfig {
-    fn default() -> Self {
-        Self {
-            schema: 1,
-            name: MachineName::SEMI_VIRTUAL_GANTRY,
-            drive: DriveChoice::Dc,
-            area: AreaConfig::default(),
-            serial: SerialConfig::default(),
-            control: ControlConfig::default(),
-            sync_stop: SyncStopConfig::default(),
-            planner: PlannerConfig::default(),
-            pen: PenConfig::default(),
-            laser: LaserConfig::default(),
-            homing: HomingConfig::default(),
-            #[cfg(feature = "third-motor")]
-            z: ZConfig::default(),
-            #[cfg(feature = "third-motor")]
-            second_motor: SecondMotorConfig::default(),
-            stepper_motor: StepperSettings::default(),
-            vectorize: VectorizeConfig::default(),
-            sheet: SheetConfig::default(),
-            follower: FollowerConfig::default(),
-            kinematics: KinematicsConfig::default(),
-            belt: BeltConfig::default(),
-            point_to_point: PointToPointConfig::default(),
-            x: AxisConfig::default(),
-            y: AxisConfig::default(),
-        }
-    }
-}
-
 impl Default for AreaConfig {
     /// A2 lying: 594 x 420 mm.
     fn default() -> Self {
@@ -567,7 +427,6 @@ impl Default for AxisConfig {
             motor: MotorConfig::default(),
             load: LoadConfig::default(),
             transmission: TransmissionConfig::default(),
-            stepper: StepperConfig::default(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! [`MachineKind`]: which motors a machine has, and how they move its pen.
 
-use super::{ConfigError, DriveChoice, KinematicsChoice, Machine};
+use super::{ConfigError, Machine};
 use core::fmt;
 
 /// Which motors a machine has, and how they move its pen: what a program must know before it leads, simulates
@@ -67,17 +67,12 @@ impl Machine {
     /// Kind of the machine, by its motors and how they move the pen.
     #[must_use]
     pub const fn kind(&self) -> MachineKind {
-        // (a checked machine has no stepper motors on a belt)
-        match (self.config().drive, self.config().kinematics.kind) {
-            (DriveChoice::Stepper, _) => MachineKind::Steppers,
-            (DriveChoice::Dc, KinematicsChoice::CoreXy) => MachineKind::Belt,
-            (DriveChoice::Dc, KinematicsChoice::Cartesian) => MachineKind::Gantry,
-        }
+        self.config().drive.kind()
     }
 
-    /// Refuses a machine of another kind than `wanted`. Whoever builds on one kind asks this first: the keys
-    /// of all kinds stand in every description, so a program that reads those of one would take any machine
-    /// for it.
+    /// Refuses a machine of another kind than `wanted`. Whoever builds on one kind asks this first, or for its
+    /// motors by [`Machine::gantry`], [`Machine::belt`] or [`Machine::steppers`]: settings that are made `of` a
+    /// machine of another kind are those of the documented machine of their own.
     ///
     /// `user` is what needs that kind, for the message.
     ///

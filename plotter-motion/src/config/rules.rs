@@ -5,118 +5,39 @@
 
 use super::belt_rules::BELT;
 use super::transmission::{LATENCY, X_TRANSMISSION, Y_TRANSMISSION};
-use super::{ConfigError, MachineConfig};
+use super::{FileConfig, Key};
 
-/// One key and what may stand behind it.
-#[derive(Clone, Copy)]
-pub(super) struct Rule {
-    /// The key with dots, as in the TOML file.
-    pub(super) key: &'static str,
-    /// What may stand behind it.
-    pub(super) form: Form,
-}
-
-/// What may stand behind a key.
-#[derive(Clone, Copy)]
-pub(super) enum Form {
-    /// A number.
-    Number(NumberRule),
-    /// A number without fraction.
-    Whole(NumberRule),
-    /// Text of at most this many bytes.
-    #[cfg_attr(not(feature = "toml"), expect(dead_code, reason = "only the reader of TOML files asks"))]
-    Text(usize),
-    /// One of a few words.
-    #[cfg_attr(not(feature = "toml"), expect(dead_code, reason = "only the reader of TOML files asks"))]
-    Choice(&'static [&'static str]),
-    /// One of a few words, or a level from 0 to 255, as text or as a whole number.
-    #[cfg_attr(not(feature = "toml"), expect(dead_code, reason = "only the reader of TOML files asks"))]
-    ChoiceOrLevel(&'static [&'static str]),
-    /// A number without fraction, or text: `auto`, or the path of a TOML file.
-    CountOrToml(NumberRule),
-    /// `true` or `false`.
-    Switch,
-}
-
-/// The range of a number.
-#[derive(Clone, Copy)]
-pub(super) struct NumberRule {
-    read: fn(&MachineConfig) -> f64,
-    /// Least allowed value.
-    pub(super) least: f64,
-    /// Greatest allowed value.
-    pub(super) most: f64,
-    /// The unit, empty for a plain number.
-    pub(super) unit: &'static str,
-    remedy: &'static str,
-}
-
-impl NumberRule {
-    /// Refuses `value` behind `key` when it is not finite or outside the range.
-    pub(super) fn check(&self, key: &'static str, value: f64) -> Result<(), ConfigError> {
-        // A NaN lies in no range.
-        if (self.least..=self.most).contains(&value) {
-            return Ok(());
-        }
-        let Self { least, most, unit, remedy, .. } = *self;
-        Err(ConfigError::OutOfRange { key, value, least, most, unit, remedy })
-    }
-}
-
-impl Rule {
-    /// Refuses a description whose value behind this key is out of range.
-    pub(super) fn check(&self, config: &MachineConfig) -> Result<(), ConfigError> {
-        match self.form {
-            Form::Number(rule) | Form::Whole(rule) | Form::CountOrToml(rule) => {
-                rule.check(self.key, (rule.read)(config))
-            }
-            Form::Text(_) | Form::Choice(_) | Form::ChoiceOrLevel(_) | Form::Switch => Ok(()),
-        }
-    }
-}
+/// A key of this crate.
+pub(super) type MachineKey = Key<FileConfig>;
 
 pub(super) const fn number(
     key: &'static str,
-    read: fn(&MachineConfig) -> f64,
-    (least, most): (f64, f64),
+    read: fn(&FileConfig) -> f64,
+    range: (f64, f64),
     unit: &'static str,
     remedy: &'static str,
-) -> Rule {
-    Rule { key, form: Form::Number(NumberRule { read, least, most, unit, remedy }) }
+) -> MachineKey {
+    Key::number(key, read, range, unit, remedy)
 }
 
 pub(super) const fn whole(
     key: &'static str,
-    read: fn(&MachineConfig) -> f64,
-    (least, most): (f64, f64),
+    read: fn(&FileConfig) -> f64,
+    range: (f64, f64),
     unit: &'static str,
     remedy: &'static str,
-) -> Rule {
-    Rule { key, form: Form::Whole(NumberRule { read, least, most, unit, remedy }) }
+) -> MachineKey {
+    Key::whole(key, read, range, unit, remedy)
 }
 
-const SCHEMA: NumberRule = NumberRule {
-    read: |c| f64::from(c.schema),
-    least: 1.0,
-    most: 1.0,
-    unit: "",
-    remedy: "write `schema = 1`",
-};
-const PENS: NumberRule = NumberRule {
-    read: |c| f64::from(c.vectorize.pens.count()),
-    least: 1.0,
-    most: 16.0,
-    unit: "",
-    remedy: "1 draws all ink with one pen",
-};
 const SIGN_OF_GAIN: &str = "for a motor that runs away swap its wires, not the sign";
 const DUTY_OF_255: &str = "duty counts in steps of 255, as the published gains do";
 
 /// Keys that the machine has once.
-static MACHINE: [Rule; 71] = [
-    Rule { key: "schema", form: Form::Whole(SCHEMA) },
-    Rule { key: "name", form: Form::Text(super::MachineName::MAX_BYTES) },
-    Rule { key: "drive", form: Form::Choice(&["dc", "stepper"]) },
+static MACHINE: [MachineKey; 61] = [
+    whole("schema", |c| f64::from(c.schema), (1.0, 1.0), "", "write `schema = 1`"),
+    Key::text("name", super::MachineName::MAX_BYTES),
+    Key::choice("drive", &["dc", "stepper"]),
     number("area.width_mm", |c| c.area.width_mm, (1.0, 100_000.0), "mm", "an A2 sheet lying is 594 wide"),
     number("area.height_mm", |c| c.area.height_mm, (1.0, 100_000.0), "mm", "an A2 sheet lying is 420 high"),
     whole(
@@ -140,7 +61,7 @@ static MACHINE: [Rule; 71] = [
         "ms",
         "ten times serial.byte_gap_ms is a good choice",
     ),
-    Rule { key: "control.controller", form: Form::Choice(&["published", "contouring"]) },
+    Key::choice("control.controller", &["published", "contouring"]),
     number(
         "control.published.kp",
         |c| f64::from(c.control.published.kp),
@@ -260,10 +181,10 @@ static MACHINE: [Rule; 71] = [
         "counts",
         "below one count no motor could ever start; the published rule has 10",
     ),
-    Rule { key: "planner.mode", form: Form::Choice(&["exact", "tolerance"]) },
-    Rule { key: "planner.s_curve", form: Form::Switch },
-    Rule { key: "planner.accel_limit", form: Form::Choice(&["vector", "axes"]) },
-    Rule { key: "planner.jerk_limit", form: Form::Choice(&["vector", "path"]) },
+    Key::choice("planner.mode", &["exact", "tolerance"]),
+    Key::switch("planner.s_curve"),
+    Key::choice("planner.accel_limit", &["vector", "axes"]),
+    Key::choice("planner.jerk_limit", &["vector", "path"]),
     number(
         "planner.path_tolerance_mm",
         |c| c.planner.path_tolerance_mm,
@@ -329,7 +250,7 @@ static MACHINE: [Rule; 71] = [
         "ms",
         "200 were found to be enough for a small servo",
     ),
-    Rule { key: "pen.lifted_by", form: Form::Choice(&["spindle", "height"]) },
+    Key::choice("pen.lifted_by", &["spindle", "height"]),
     number(
         "pen.down_z_mm",
         |c| c.pen.down_z_mm,
@@ -337,7 +258,7 @@ static MACHINE: [Rule; 71] = [
         "mm",
         "0 where a text lifts to a Z above it and lowers to 0 or below",
     ),
-    Rule { key: "laser.enabled", form: Form::Switch },
+    Key::switch("laser.enabled"),
     whole(
         "laser.full_power",
         |c| f64::from(c.laser.full_power),
@@ -450,41 +371,7 @@ static MACHINE: [Rule; 71] = [
         "N m s",
         "0 is a motor whose swing nothing damps but friction",
     ),
-    Rule { key: "vectorize.mode", form: Form::Choice(&["centreline", "outline", "mixed"]) },
-    number(
-        "vectorize.max_error_px",
-        |c| c.vectorize.max_error_px,
-        (0.01, 100.0),
-        "px",
-        "0.5 is half a pixel",
-    ),
-    Rule { key: "vectorize.pieces", form: Form::Choice(&["lines", "arcs", "cubics"]) },
-    Rule { key: "vectorize.threshold", form: Form::ChoiceOrLevel(&["auto", "otsu", "adaptive"]) },
-    Rule { key: "vectorize.pens", form: Form::CountOrToml(PENS) },
-    Rule { key: "vectorize.order", form: Form::Choice(&["none", "fast", "best"]) },
-    number(
-        "vectorize.hatch_mm",
-        |c| c.vectorize.hatch_mm,
-        (0.0, 1_000.0),
-        "mm",
-        "the pen's width closes the hatching, 0 is none",
-    ),
-    number(
-        "vectorize.pen_mm",
-        |c| c.vectorize.pen_mm,
-        (0.0, 100.0),
-        "mm",
-        "a fineliner draws 0.3 to 0.8, 0 is a pixel of the picture",
-    ),
-    whole("vectorize.threads", |c| f64::from(c.vectorize.threads), (0.0, 1_024.0), "", "0 takes one a core"),
-    Rule { key: "vectorize.overlay", form: Form::Text(super::FileName::MAX_BYTES) },
-    whole(
-        "vectorize.max_line_px",
-        |c| f64::from(c.vectorize.max_line_px),
-        (0.0, 512.0),
-        "px",
-        "0 finds it from the picture",
-    ),
+    Key::table("vectorize"),
 ];
 
 /// Keys that each axis has.
@@ -505,10 +392,7 @@ macro_rules! axis_rules {
                 "",
                 "count the slots of the disc",
             ),
-            Rule {
-                key: concat!(stringify!($axis), ".encoder.decoding"),
-                form: Form::Choice(&["x1", "x2", "x4"]),
-            },
+            Key::choice(concat!(stringify!($axis), ".encoder.decoding"), &["x1", "x2", "x4"]),
             number(
                 concat!(stringify!($axis), ".motor.supply_v"),
                 |c| c.$axis.motor.supply_v,
@@ -600,7 +484,7 @@ macro_rules! axis_rules {
                 "steps/mm",
                 "the documented stepper plotter has 87.58",
             ),
-            Rule { key: concat!(stringify!($axis), ".stepper.inverted"), form: Form::Switch },
+            Key::switch(concat!(stringify!($axis), ".stepper.inverted")),
             number(
                 concat!(stringify!($axis), ".stepper.backlash_mm"),
                 |c| c.$axis.stepper.backlash_mm,
@@ -626,11 +510,14 @@ macro_rules! axis_rules {
     };
 }
 
-static X: [Rule; 20] = axis_rules!(x);
-static Y: [Rule; 20] = axis_rules!(y);
+/// Tables that other crates read, after those of this one.
+static OTHERS: [MachineKey; 2] = [Key::table("sheet"), Key::table("follower")];
+
+static X: [MachineKey; 20] = axis_rules!(x);
+static Y: [MachineKey; 20] = axis_rules!(y);
 
 /// All keys, in the order of the documentation.
-pub(super) fn rules() -> impl Iterator<Item = &'static Rule> {
+pub(super) fn rules() -> impl Iterator<Item = &'static MachineKey> {
     #[cfg(feature = "third-motor")]
     let third_motor = &super::third_motor::RULES;
     #[cfg(not(feature = "third-motor"))]
@@ -640,8 +527,7 @@ pub(super) fn rules() -> impl Iterator<Item = &'static Rule> {
         .chain(third_motor)
         .chain(&LATENCY)
         .chain(&BELT)
-        .chain(&super::sheet::RULES)
-        .chain(&super::follower::RULES)
+        .chain(&OTHERS)
         .chain(&X)
         .chain(&X_TRANSMISSION)
         .chain(&Y)
@@ -651,6 +537,7 @@ pub(super) fn rules() -> impl Iterator<Item = &'static Rule> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::section::Form;
     use std::{eprintln, format, fs, string::String, vec::Vec};
 
     /// Relative distance between a number and the single-precision number nearest to it.
@@ -667,7 +554,7 @@ mod tests {
 
     #[test]
     fn no_key_is_listed_twice() {
-        let mut keys: Vec<_> = rules().map(|rule| rule.key).collect();
+        let mut keys: Vec<_> = rules().map(Key::key).collect();
         let listed = keys.len();
         keys.sort_unstable();
         keys.dedup();
@@ -678,15 +565,19 @@ mod tests {
     fn the_documentation_page_gives_every_key_with_its_range() {
         let Some(page) = beside_the_crate("docs/machine-config.md") else { return };
         for rule in rules() {
-            let key = rule.key.replacen("y.", "x.", usize::from(rule.key.starts_with("y.")));
+            let key = rule.key().replacen("y.", "x.", usize::from(rule.key().starts_with("y.")));
+            if matches!(rule.rule.form, Form::Table) {
+                assert!(page.contains(&format!("| `{key}.")), "no rows for `{key}`");
+                continue;
+            }
             let row = page.lines().find(|line| line.contains(&format!("| `{key}` |")));
             let row = row.unwrap_or_else(|| panic!("no row for `{key}`"));
-            if let Form::Number(range) | Form::Whole(range) = rule.form {
+            if let Some(((least_allowed, most_allowed), unit)) = rule.range() {
                 let cells: Vec<_> = row.split('|').map(str::trim).collect();
-                assert_eq!(cells[2], range.unit, "unit of `{key}`");
+                assert_eq!(cells[2], unit, "unit of `{key}`");
                 let (least, most) = cells[3].split_once("..").unwrap_or((cells[3], cells[3]));
                 let most = most.replace(',', "");
-                assert_eq!((least.parse(), most.parse()), (Ok(range.least), Ok(range.most)), "`{key}`");
+                assert_eq!((least.parse(), most.parse()), (Ok(least_allowed), Ok(most_allowed)), "`{key}`");
             }
         }
     }
@@ -694,14 +585,13 @@ mod tests {
     #[test]
     fn the_documentation_page_gives_every_default() {
         let Some(page) = beside_the_crate("docs/machine-config.md") else { return };
-        let default = MachineConfig::default();
-        for rule in rules().filter(|rule| !rule.key.starts_with("y.")) {
-            let (Form::Number(range) | Form::Whole(range)) = rule.form else { continue };
-            let row = page.lines().find(|line| line.contains(&format!("| `{}` |", rule.key))).unwrap();
+        let default = FileConfig::default();
+        for rule in rules().filter(|rule| !rule.key().starts_with("y.")) {
+            let Some(value) = rule.value(&default) else { continue };
+            let row = page.lines().find(|line| line.contains(&format!("| `{}` |", rule.key()))).unwrap();
             let written: f64 = row.split('|').map(str::trim).nth(4).unwrap().parse().unwrap();
             // Gains are held in single precision: the page says 1e-5, the field the number nearest to it.
-            let value = (range.read)(&default);
-            assert!((written - value).abs() <= value.abs() * SINGLE_PRECISION, "default of `{}`", rule.key);
+            assert!((written - value).abs() <= value.abs() * SINGLE_PRECISION, "default of `{}`", rule.key());
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Suggestions for an unknown key: a near spelling, another unit, another table.
 
-use super::rules::rules;
+use super::toml_file::Keys;
 use alloc::{format, string::String, vec::Vec};
 
 /// Longer words are no slip of the pen, and the work of comparing them grows with their square.
@@ -95,23 +95,17 @@ const CONVERSIONS: [(&str, &str, f64, f64); 32] = [
     ("Hz", "kHz", 1.0, 1_000.0),
 ];
 
-/// Keys of older files by table, and what says the same today.
-const RENAMED: [(&str, &str, &str); 2] = [
-    ("vectorize", "arcs", "`pieces = \"arcs\"` for `arcs = true`, and nothing for `arcs = false`"),
-    ("vectorize", "curves", "`pieces = \"cubics\"` for `curves = true`, and nothing for `curves = false`"),
-];
-
 /// What the writer of the unknown key `word` in the table `table` (empty: the top) may have meant; `value` is
 /// the number behind it, if it is one.
-pub(super) fn remedy(table: &str, word: &str, value: Option<f64>) -> String {
-    if let Some((_, _, now)) = RENAMED.iter().find(|(of, old, _)| (*of, *old) == (table, word)) {
+pub(super) fn remedy(keys: &Keys, table: &str, word: &str, value: Option<f64>) -> String {
+    if let Some((_, _, now)) = keys.renamed.iter().find(|(of, old, _)| (*of, *old) == (table, word)) {
         return format!("write {now}");
     }
-    let known = keys_of(table);
+    let known = keys_of(keys, table);
     if let Some(text) = another_unit(word, value, &known) {
         return text;
     }
-    if let Some(path) = same_key_elsewhere(table, word) {
+    if let Some(path) = same_key_elsewhere(keys, table, word) {
         let place = path.rsplit_once('.').map_or("at the top of the file", |(place, _)| place);
         return if path.contains('.') {
             format!("`{word}` belongs under [{place}]")
@@ -127,9 +121,9 @@ pub(super) fn remedy(table: &str, word: &str, value: Option<f64>) -> String {
 }
 
 /// The keys and tables that stand directly in `table`, each once.
-fn keys_of(table: &str) -> Vec<&'static str> {
+fn keys_of(of: &Keys, table: &str) -> Vec<&'static str> {
     let mut keys = Vec::new();
-    for rule in rules() {
+    for rule in &of.rules {
         let below = if table.is_empty() {
             Some(rule.key)
         } else {
@@ -177,10 +171,10 @@ fn rounded(value: f64) -> f64 {
 }
 
 /// The path of a key of this very name in another table: the one that shares most of `table`.
-fn same_key_elsewhere(table: &str, word: &str) -> Option<&'static str> {
+fn same_key_elsewhere(keys: &Keys, table: &str, word: &str) -> Option<&'static str> {
     let shared = |path: &str| path.bytes().zip(table.bytes()).take_while(|(a, b)| a == b).count();
     let mut best: Option<(usize, &'static str)> = None;
-    for rule in rules() {
+    for rule in &keys.rules {
         let path = prefixes(rule.key).find(|path| path.rsplit('.').next() == Some(word));
         if let Some(path) = path.filter(|path| best.is_none_or(|(share, _)| shared(path) > share)) {
             best = Some((shared(path), path));
@@ -258,7 +252,7 @@ mod tests {
 
     #[test]
     fn a_speed_in_another_unit_is_converted() {
-        let feed = |word, value| remedy("control.contouring", word, value);
+        let feed = |word, value| remedy(&Keys::of_the_machine(), "control.contouring", word, value);
         assert_eq!(feed("feed_mm_min", Some(3_600.0)), "the unit here is mm/s: write `feed_mm_s = 60`");
         assert_eq!(feed("accel_m_s2", Some(0.6)), "the unit here is mm/s^2: write `accel_mm_s2 = 600`");
         assert_eq!(feed("feed_m_s", None), "the unit here is mm/s: write `feed_mm_s`, 1 m/s is 1000 mm/s");
@@ -267,6 +261,7 @@ mod tests {
 
     #[test]
     fn every_unit_that_converts_has_an_ending_and_every_ending_is_a_key_s_or_converts() {
+        let keys = Keys::of_the_machine();
         let endings = || UNITS.iter().chain(&SHORT_UNITS).map(|(_, unit)| *unit);
         for (from, to, ..) in CONVERSIONS {
             assert!(endings().any(|unit| unit == from), "{from} has no ending");
@@ -274,13 +269,15 @@ mod tests {
         }
         for unit in endings() {
             let converts = CONVERSIONS.iter().any(|(from, ..)| *from == unit);
-            let is_a_key_s = rules().any(|rule| split_unit(rule.key).1 == unit);
-            assert!(converts || is_a_key_s, "{unit} is of no use");
+            let is_a_key_s = keys.rules.iter().any(|rule| split_unit(rule.key).1 == unit);
+            // Keys in pixels stand in the sections of other crates.
+            assert!(converts || is_a_key_s || unit == "px", "{unit} is of no use");
         }
     }
 
     #[test]
     fn a_key_in_the_wrong_table_is_sent_to_its_own() {
+        let remedy = |table, word, value| remedy(&Keys::of_the_machine(), table, word, value);
         assert_eq!(remedy("y.motor", "coulomb_n_m", None), "`coulomb_n_m` belongs under [y.load]");
         assert_eq!(remedy("", "encoder", None), "`encoder` belongs under [x]");
         assert_eq!(
@@ -291,7 +288,10 @@ mod tests {
 
     #[test]
     fn a_word_like_no_key_gets_the_list() {
-        assert_eq!(remedy("area", "colour", None), "known here: `width_mm`, `height_mm`");
+        assert_eq!(
+            remedy(&Keys::of_the_machine(), "area", "colour", None),
+            "known here: `width_mm`, `height_mm`"
+        );
         assert_eq!(nearest(&"e".repeat(100_000), &["x", "y"]), None);
     }
 }

@@ -7,8 +7,7 @@
 /// How the motors are driven.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
-#[non_exhaustive]
-pub enum DriveChoice {
+pub(super) enum DriveChoice {
     /// DC motors with encoders: `[control]`, `[sync_stop]` and the motors, encoders and loads of the axes
     /// hold.
     #[default]
@@ -25,6 +24,7 @@ pub enum DriveChoice {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct StepperConfig {
     /// Pulses (microsteps) to the millimetre.
     pub steps_per_mm: f64,
@@ -93,6 +93,7 @@ pub enum JerkChoice {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct PlannerConfig {
     /// Whether corners are passed exactly or rounded.
     pub mode: PathChoice,
@@ -111,8 +112,7 @@ pub struct PlannerConfig {
     pub accel_limit: AccelChoice,
     /// Greatest acceleration of the pen with [`AccelChoice::Vector`], mm/s^2.
     pub accel_mm_s2: f64,
-    /// Greatest acceleration of the motor `x` with [`AccelChoice::Axes`], mm/s^2; of a motor of a belt, mm of
-    /// the belt.
+    /// Greatest acceleration of the motor `x` with [`AccelChoice::Axes`], mm/s^2.
     pub accel_x_mm_s2: f64,
     /// The same of the motor `y`.
     pub accel_y_mm_s2: f64,
@@ -175,6 +175,7 @@ pub enum PenLift {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct PenConfig {
     /// Angle of the servo with the pen up, degrees.
     pub up_deg: f64,
@@ -203,6 +204,7 @@ impl Default for PenConfig {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct LaserConfig {
     /// Whether there is one, and it may be switched on.
     pub enabled: bool,
@@ -224,6 +226,7 @@ impl Default for LaserConfig {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct HomingConfig {
     /// Greatest rate where the way is known, pulses/s.
     pub fast_rate_hz: f64,

@@ -1,6 +1,7 @@
 //! The tables of a third motor: [`ZConfig`] and [`SecondMotorConfig`].
 
-use super::rules::{Form, Rule, number};
+use super::Key;
+use super::rules::{MachineKey, number};
 
 /// A third axis: `[z]`, a tool that is raised and lowered by a stepper motor of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,6 +10,7 @@ use super::rules::{Form, Rule, number};
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct ZConfig {
     /// Whether there is one.
     pub enabled: bool,
@@ -71,6 +73,7 @@ pub enum SecondMotorChoice {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct SecondMotorConfig {
     /// The axis with two motors.
     pub axis: SecondMotorChoice,
@@ -89,8 +92,8 @@ impl Default for SecondMotorConfig {
 }
 
 /// Keys of the tables.
-pub(super) static RULES: [Rule; 13] = [
-    Rule { key: "z.enabled", form: Form::Switch },
+pub(super) static RULES: [MachineKey; 13] = [
+    Key::switch("z.enabled"),
     number(
         "z.steps_per_mm",
         |c| c.z.steps_per_mm,
@@ -119,10 +122,10 @@ pub(super) static RULES: [Rule; 13] = [
         "mm",
         "how far the tool goes up and down in all",
     ),
-    Rule { key: "z.lifts_pen", form: Form::Switch },
+    Key::switch("z.lifts_pen"),
     number("z.up_mm", |c| c.z.up_mm, (0.0, 65535.0), "mm", "a few millimetres above the sheet"),
     number("z.down_mm", |c| c.z.down_mm, (0.0, 65535.0), "mm", "where the pen touches the sheet"),
-    Rule { key: "z.homes", form: Form::Switch },
+    Key::switch("z.homes"),
     number(
         "z.start_rate_hz",
         |c| c.z.start_rate_hz,
@@ -130,7 +133,7 @@ pub(super) static RULES: [Rule; 13] = [
         "pulses/s",
         "a motor without a load starts with 2000 of 3200 steps a turn",
     ),
-    Rule { key: "second_motor.axis", form: Form::Choice(&["none", "x", "y"]) },
+    Key::choice("second_motor.axis", &["none", "x", "y"]),
     number(
         "second_motor.offset_mm",
         |c| c.second_motor.offset_mm,

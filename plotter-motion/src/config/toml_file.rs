@@ -3,15 +3,16 @@
 //! The file is read twice: first key by key against the list of keys, so that what is wrong is named with
 //! its line and a remedy; then, found to be right, into the fields.
 
-use super::rules::{Form, NumberRule, Rule, rules};
+use super::rules::{MachineKey, rules};
+use super::section::{Form, Range, Rule};
 use super::spelling::{nearest, remedy};
-use super::{ConfigError, Machine, MachineConfig, PensChoice, TomlError, TomlPlace};
+use super::{ConfigError, FileConfig, Machine, MachineConfig, Section, TomlError, TomlPlace};
 use alloc::{
     format,
     string::{String, ToString as _},
     vec::Vec,
 };
-use serde::Deserialize as _;
+use serde::{Deserialize as _, de::DeserializeOwned};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer};
 
@@ -46,17 +47,26 @@ impl MachineConfig {
     /// or unknown `schema`. The first one in the file, but `schema` before all others.
     pub fn from_toml(text: &str) -> Result<Self, TomlError> {
         let document = parse(text)?;
-        Self::from_document(text, document)
+        check(text, document.get_ref(), &Keys::of_the_machine())?;
+        let file = FileConfig::of_checked(text, &document)?;
+        let placed = |error| placed(text, &document, error);
+        let config = Self::try_from(file).map_err(placed)?;
+        // What a machine of this kind does not read is checked while it is here.
+        let kept = FileConfig::from(config);
+        let unread = |key: &&MachineKey| key.value(&kept) != key.value(&file);
+        rules().filter(unread).try_for_each(|key| key.check(&file)).map_err(placed)?;
+        Ok(config)
     }
+}
 
-    fn from_document(text: &str, document: Spanned<DeTable<'_>>) -> Result<Self, TomlError> {
-        check_schema(text, document.get_ref())?;
-        let mut first = None;
-        check_table(text, document.get_ref(), "", &mut first);
-        if let Some((_, error)) = first {
-            return Err(error);
-        }
-        Self::deserialize(Deserializer::from(document)).map_err(|error| syntax(text, &error))
+impl FileConfig {
+    /// What a document says whose keys have been checked.
+    fn of_checked(text: &str, document: &Spanned<DeTable<'_>>) -> Result<Self, TomlError> {
+        let is_another_s = |name: &str| rules().any(|key| key.key() == name && is_table(&key.rule));
+        let own = document.get_ref().iter().filter(|(name, _)| !is_another_s(name.get_ref()));
+        let own = own.map(|(name, value)| (name.clone(), value.clone())).collect();
+        Self::deserialize(Deserializer::from(Spanned::new(document.span(), own)))
+            .map_err(|error| syntax(text, &error))
     }
 }
 
@@ -78,12 +88,81 @@ impl Machine {
     /// [`Machine::new`] refuses.
     pub fn from_toml(text: &str) -> Result<Self, TomlError> {
         let document = parse(text)?;
-        let config = MachineConfig::from_document(text, document.clone())?;
-        Self::new(config).map_err(|error| {
-            let span = find(document.get_ref(), error.key());
-            TomlError::Invalid { at: span.map(|offset| TomlPlace::of(text, offset)), error }
-        })
+        check(text, document.get_ref(), &Keys::of_the_machine())?;
+        Self::of_checked(text, &document)
     }
+
+    /// Reads a description and the section of another crate in the same file. Without that section it has its
+    /// defaults.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Machine::from_toml`], for the keys and values of the section, too.
+    pub fn from_toml_with<S: Section + DeserializeOwned>(text: &str) -> Result<(Self, S), TomlError> {
+        let document = parse(text)?;
+        check(text, document.get_ref(), &Keys::of_the_machine().with::<S>())?;
+        let machine = Self::of_checked(text, &document)?;
+        let written = document.get_ref().iter().find(|(name, _)| name.get_ref() == S::NAME);
+        let section = match written.map(|(_, value)| (value.span(), value.get_ref())) {
+            Some((span, DeValue::Table(table))) => {
+                S::deserialize(Deserializer::from(Spanned::new(span, table.clone())))
+                    .map_err(|error| syntax(text, &error))?
+            }
+            _ => S::default(),
+        };
+        let section = section.checked(machine.config()).map_err(|error| placed(text, &document, error))?;
+        Ok((machine, section))
+    }
+
+    fn of_checked(text: &str, document: &Spanned<DeTable<'_>>) -> Result<Self, TomlError> {
+        let file = FileConfig::of_checked(text, document)?;
+        rules()
+            .try_for_each(|key| key.check(&file))
+            .and_then(|()| MachineConfig::try_from(file))
+            .and_then(Self::new)
+            .map_err(|error| placed(text, document, error))
+    }
+}
+
+/// A refusal with the place of its key.
+fn placed(text: &str, document: &Spanned<DeTable<'_>>, error: ConfigError) -> TomlError {
+    let span = find(document.get_ref(), error.key());
+    TomlError::Invalid { at: span.map(|offset| TomlPlace::of(text, offset)), error }
+}
+
+/// The keys that a file may have.
+pub(super) struct Keys {
+    pub(super) rules: Vec<&'static Rule>,
+    /// Table, key of older files, and what says the same today.
+    pub(super) renamed: Vec<(&'static str, &'static str, &'static str)>,
+}
+
+impl Keys {
+    /// Those of this crate, and the names of the other sections.
+    pub(super) fn of_the_machine() -> Self {
+        Self { rules: rules().map(|key| &key.rule).collect(), renamed: Vec::new() }
+    }
+
+    /// These with the keys of a section that another crate reads.
+    fn with<S: Section>(mut self) -> Self {
+        self.rules.retain(|rule| rule.key != S::NAME);
+        self.rules.extend(S::keys().iter().map(|key| &key.rule));
+        self.renamed.extend(S::renamed().iter().map(|(key, now)| (S::NAME, *key, *now)));
+        self
+    }
+}
+
+const fn is_table(rule: &Rule) -> bool {
+    matches!(rule.form, Form::Table)
+}
+
+/// Refuses a document with a wrong key or a value of the wrong kind: the first in the file, but `schema`
+/// before all others.
+fn check(text: &str, table: &DeTable<'_>, keys: &Keys) -> Result<(), TomlError> {
+    check_schema(text, table)?;
+    let mut first = None;
+    check_table(text, table, "", keys, &mut first);
+    first.map_or(Ok(()), |(_, error)| Err(error))
 }
 
 fn parse(text: &str) -> Result<Spanned<DeTable<'_>>, TomlError> {
@@ -133,14 +212,16 @@ fn note(first: &mut First, offset: usize, error: TomlError) {
 }
 
 /// Checks the keys of `table`, whose own name is `path` (empty: the top). Known tables lie three deep.
-fn check_table(text: &str, table: &DeTable<'_>, path: &str, first: &mut First) {
+fn check_table(text: &str, table: &DeTable<'_>, path: &str, keys: &Keys, first: &mut First) {
     for (key, value) in table {
         let name: &str = key.get_ref();
         let full = if path.is_empty() { name.to_string() } else { format!("{path}.{name}") };
         // A quoted key may contain a dot and then is not the key that it spells.
-        let rule = rules().find(|rule| rule.key == full && !name.contains('.'));
+        let rule = keys.rules.iter().find(|rule| rule.key == full && !name.contains('.'));
         let is_table = !name.contains('.')
-            && rules()
+            && keys
+                .rules
+                .iter()
                 .any(|rule| rule.key.strip_prefix(full.as_str()).is_some_and(|rest| rest.starts_with('.')));
         if let Some(rule) = rule {
             if let Some(error) = check_value(text, rule, value) {
@@ -149,15 +230,18 @@ fn check_table(text: &str, table: &DeTable<'_>, path: &str, first: &mut First) {
         } else if !is_table {
             let offset = key.span().start;
             let at = TomlPlace::of(text, offset);
-            let remedy = remedy(path, name, number(value.get_ref()));
+            let remedy = remedy(keys, path, name, number(value.get_ref()));
             note(first, offset, TomlError::UnknownKey { at, key: shown(&full), remedy });
         } else if let DeValue::Table(inner) = value.get_ref() {
-            check_table(text, inner, &full, first);
+            check_table(text, inner, &full, keys, first);
         } else {
-            let remedy = format!("it is a table: write [{full}], and its keys on the lines below");
-            note(first, value.span().start, wrong_type(text, &full, value, remedy));
+            note(first, value.span().start, wrong_type(text, &full, value, as_a_table(&full)));
         }
     }
+}
+
+fn as_a_table(key: &str) -> String {
+    format!("it is a table: write [{key}], and its keys on the lines below")
 }
 
 fn wrong_type(text: &str, key: &str, value: &Spanned<DeValue<'_>>, remedy: String) -> TomlError {
@@ -174,7 +258,7 @@ fn wrong_type(text: &str, key: &str, value: &Spanned<DeValue<'_>>, remedy: Strin
 }
 
 /// What is wrong with one value by its kind; its range is checked later, with the line, by [`Machine::new`].
-fn check_value(text: &str, rule: &'static Rule, value: &Spanned<DeValue<'_>>) -> Option<TomlError> {
+fn check_value(text: &str, rule: &Rule, value: &Spanned<DeValue<'_>>) -> Option<TomlError> {
     let refused = |remedy| Some(wrong_type(text, rule.key, value, remedy));
     match rule.form {
         Form::Number(range) => match number(value.get_ref()) {
@@ -188,23 +272,10 @@ fn check_value(text: &str, rule: &'static Rule, value: &Spanned<DeValue<'_>>) ->
                 None => format!("write a number{}", in_unit(range.unit)),
             }),
         },
-        Form::CountOrToml(_) if matches!(value.get_ref(), DeValue::String(text) if PensChoice::from_text(text).is_some()) => {
-            None
-        }
-        Form::CountOrToml(range) => match (whole(value.get_ref()), value.get_ref()) {
-            (Some(whole), _) if u32::try_from(whole).is_ok() => None,
-            (_, DeValue::Integer(_)) => {
-                let number = number(value.get_ref()).unwrap_or(f64::NAN);
-                out_of_range(text, rule.key, &range, number, value)
-            }
-            _ => {
-                let (least, most) = (range.least, range.most);
-                refused(format!(
-                    "write a whole number from {least} to {most}, \"auto\", or the path of a palette's file that ends \
-                     in .toml and has at most {} bytes",
-                    super::FileName::MAX_BYTES
-                ))
-            }
+        Form::WholeOrText(range, is_meant, instead) => match (value.get_ref(), number(value.get_ref())) {
+            (DeValue::String(text), _) if is_meant(text) => None,
+            (DeValue::Integer(_), Some(number)) => out_of_range(text, rule.key, &range, number, value),
+            _ => refused(instead.to_string()),
         },
         Form::Whole(range) => match (whole(value.get_ref()), value.get_ref()) {
             (Some(whole), _) if u32::try_from(whole).is_ok() => None,
@@ -234,19 +305,10 @@ fn check_value(text: &str, rule: &'static Rule, value: &Spanned<DeValue<'_>>) ->
             DeValue::Boolean(_) => None,
             _ => refused("write true or false, without quotes".to_string()),
         },
-        Form::ChoiceOrLevel(words) => {
-            let is_level = match value.get_ref() {
-                DeValue::String(text) if words.contains(&text.as_ref()) => true,
-                DeValue::String(text) => text.parse::<u8>().is_ok(),
-                other => whole(other).is_some_and(|level| u8::try_from(level).is_ok()),
-            };
-            let quoted: Vec<_> = words.iter().map(|word| format!("\"{word}\"")).collect();
-            if is_level {
-                None
-            } else {
-                refused(format!("write {} or a level from 0 to 255", quoted.join(", ")))
-            }
-        }
+        Form::Table => match value.get_ref() {
+            DeValue::Table(_) => None,
+            _ => refused(as_a_table(rule.key)),
+        },
     }
 }
 
@@ -258,7 +320,7 @@ fn is_extreme(number: f64) -> bool {
 fn out_of_range(
     text: &str,
     key: &'static str,
-    range: &NumberRule,
+    range: &Range,
     number: f64,
     value: &Spanned<DeValue<'_>>,
 ) -> Option<TomlError> {

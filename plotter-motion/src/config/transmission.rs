@@ -2,8 +2,8 @@
 //! and of the delay of its drive.
 
 use super::error::Bound;
-use super::rules::{Rule, number, whole};
-use super::{AxisConfig, ConfigError, MachineConfig};
+use super::rules::{MachineKey, number, whole};
+use super::{AxisConfig, ConfigError, DcConfig};
 use core::f64::consts::TAU;
 
 /// Belt, carriage and rail between a DC motor's shaft, where the encoder is, and the pen.
@@ -89,9 +89,9 @@ macro_rules! transmission_rules {
 }
 
 /// The keys of both axes' transmissions, and the latency.
-pub(super) static X_TRANSMISSION: [Rule; 5] = transmission_rules!(x);
-pub(super) static Y_TRANSMISSION: [Rule; 5] = transmission_rules!(y);
-pub(super) static LATENCY: [Rule; 1] = [whole(
+pub(super) static X_TRANSMISSION: [MachineKey; 5] = transmission_rules!(x);
+pub(super) static Y_TRANSMISSION: [MachineKey; 5] = transmission_rules!(y);
+pub(super) static LATENCY: [MachineKey; 1] = [whole(
     "control.latency_periods",
     |c| f64::from(c.control.latency_periods),
     (0.0, 100.0),
@@ -100,7 +100,7 @@ pub(super) static LATENCY: [Rule; 1] = [whole(
 )];
 
 /// Refuses a transmission that cannot be.
-pub(super) fn check_transmission(config: &MachineConfig) -> Result<(), ConfigError> {
+pub(super) fn check_transmission(config: &DcConfig) -> Result<(), ConfigError> {
     let keys = [
         ("x.transmission.carriage_kg", "x.transmission.rail_friction_n"),
         ("y.transmission.carriage_kg", "y.transmission.rail_friction_n"),

@@ -3,7 +3,7 @@
 use super::{AxisTrouble, Contouring, LineController, LineTracking, PointToPoint, PointToPointSettings};
 use crate::{
     Axis, Demand, Direction, Drive, Machine, StepPoint,
-    config::{ControllerChoice, KinematicsChoice},
+    config::{ControllerChoice, DcConfig, DriveConfig},
 };
 use core::time::Duration;
 
@@ -34,11 +34,11 @@ impl ChosenController {
     /// the motors move the pen; ours is the same.
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
-        match (machine.config().control.controller, machine.config().kinematics.kind) {
-            (ControllerChoice::Published, KinematicsChoice::Cartesian) => {
+        match (DcConfig::of(machine).control.controller, &machine.config().drive) {
+            (ControllerChoice::Published, DriveConfig::Gantry(_) | DriveConfig::Steppers(_)) => {
                 Self::LineTracking(LineTracking::new(machine))
             }
-            (ControllerChoice::Published, KinematicsChoice::CoreXy) => {
+            (ControllerChoice::Published, DriveConfig::Belt(_)) => {
                 Self::PointToPoint(PointToPoint::new(PointToPointSettings::of(machine)))
             }
             (ControllerChoice::Contouring, _) => Self::Contouring(Contouring::new(machine)),

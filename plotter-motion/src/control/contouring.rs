@@ -4,8 +4,9 @@ use super::coasting_bridge::CoastingBridge;
 use super::led_axis::{LedAxis, trouble_of};
 use super::line_plan::{LinePlan, Wait};
 use super::{AxisTrouble, LineController, ShaftModel};
+use crate::config::DcConfig;
 use crate::{
-    Axis, Demand, Direction, Drive, Machine, MachineConfig, MotionLimits, StepPoint,
+    Axis, Demand, Direction, Drive, Machine, MotionLimits, StepPoint,
     config::{AxisConfig, Decoding},
 };
 use core::f64::consts::TAU;
@@ -161,7 +162,7 @@ impl ContouringSettings {
         // An error across the line is seen on the paper, one along it is not: the loop across is the stiffer
         // one.
         const ACROSS_SHARE: f64 = 1.6;
-        let config = &machine.led_motors();
+        let config = machine.led_motors();
         let contouring = &config.control.contouring;
         // The plan is made in counts, the limits in those of the coarser axis, so that no axis exceeds them.
         let counts_per_mm = config.x.counts_per_mm.min(config.y.counts_per_mm);
@@ -174,7 +175,7 @@ impl ContouringSettings {
         Self {
             limits: MotionLimits {
                 speed_mm_s: contouring.feed_mm_s * counts_per_mm,
-                accel_mm_s2: contouring.accel_mm_s2.min(most_accel_mm_s2(config)) * counts_per_mm,
+                accel_mm_s2: contouring.accel_mm_s2.min(most_accel_mm_s2(&config)) * counts_per_mm,
                 jerk_mm_s3: contouring.jerk_mm_s3 * counts_per_mm,
             },
             period_us: libm::round(period_us).max(1.0) as u32,
@@ -198,7 +199,7 @@ impl ContouringSettings {
 /// The greatest deceleration at which a carriage on a belt follows its motor, mm/s^2: what its rail's
 /// friction brakes it with. Braked harder it runs ahead, through the play and against the other side of its
 /// belt, swings there, and pulls on a shaft that is to stand.
-fn most_accel_mm_s2(config: &MachineConfig) -> f64 {
+fn most_accel_mm_s2(config: &DcConfig) -> f64 {
     // Friction may be less than described, and mass more, by a tenth each.
     const SHARE: f64 = 0.8;
     let of = |axis: &AxisConfig| {

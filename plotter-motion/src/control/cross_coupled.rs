@@ -1,6 +1,7 @@
 //! [`CrossCoupled`]: a loop around both axes that controls the contour error.
 
 use super::{ContourController, ContourState, ShaftModel};
+use crate::config::DcConfig;
 use crate::{Demand, Duty, Machine};
 use core::f64::consts::TAU;
 
@@ -53,7 +54,7 @@ impl CrossCoupledSettings {
     pub fn of(machine: &Machine) -> Self {
         /// Part of an axis controller's gains that comes in addition.
         const ADDED_GAIN: f32 = 0.5;
-        let config = machine.config();
+        let config = DcConfig::of(machine);
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         let bandwidth_rad_s = (config.control.contouring.bandwidth_hz * TAU) as f32;
         let w = bandwidth_rad_s;

@@ -1,6 +1,7 @@
 //! [`Learning`]: what went wrong in the last run of a drawing is put right in the next.
 
 use super::{ContourController, ContourState, ShaftModel};
+use crate::config::DcConfig;
 use crate::{Demand, Duty, Machine};
 use core::f64::consts::TAU;
 
@@ -47,7 +48,7 @@ impl LearningSettings {
     /// For a machine: the gains of its axes' controllers, bins of half a millisecond.
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
-        let config = machine.config();
+        let config = DcConfig::of(machine);
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         let w = (config.control.contouring.bandwidth_hz * TAU) as f32;
         let per_supply = |axis| {

@@ -1,6 +1,7 @@
 //! Published PID line tracking: x leads, y follows the slope.
 
 use super::LineController;
+use crate::config::DcConfig;
 use crate::{
     Axis, Demand, Direction, Drive, Duty, Machine, StepPoint,
     config::PublishedConfig,
@@ -78,7 +79,7 @@ impl LineTrackingSettings {
     /// ```
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
-        let config = machine.config();
+        let config = DcConfig::of(machine);
         Self { published: config.control.published, sync_stop: SyncStop::new(config.sync_stop) }
     }
 }

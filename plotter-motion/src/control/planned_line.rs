@@ -3,6 +3,7 @@
 use super::led_axis::{LedAxis, trouble_of};
 use super::line_plan::{LinePlan, Wait};
 use super::{AxisState, AxisTrouble, ContourController, ContourState, ContouringSettings, LineController};
+use crate::config::DcConfig;
 use crate::{Axis, Demand, Direction, Drive, Machine, StepPoint};
 use core::time::Duration;
 
@@ -59,7 +60,7 @@ impl<C: ContourController> PlannedLine<C> {
         // A pen that is behind by less is led on by its controller; by more, something holds it.
         const WAIT_FROM_MM: f64 = 0.1;
         const WAIT_MM: f64 = 0.5;
-        let config = machine.config();
+        let config = DcConfig::of(machine);
         let counts_per_mm = config.x.counts_per_mm.min(config.y.counts_per_mm);
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         let settings = ContouringSettings {

@@ -1,6 +1,7 @@
 //! [`PlannedPid`]: one axis after its reference, with or without a model of the motor.
 
 use super::{AxisController, AxisState, ShaftModel, TwoAxes};
+use crate::config::DcConfig;
 use crate::{Duty, Machine, config::AxisConfig};
 use core::f64::consts::TAU;
 
@@ -60,7 +61,7 @@ impl TwoAxes<PlannedPid> {
     /// Both axes of a machine, at the bandwidth of its `[control.contouring]`, without feed-forward.
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
-        let config = machine.config();
+        let config = DcConfig::of(machine);
         let bandwidth_hz = config.control.contouring.bandwidth_hz;
         Self { x: PlannedPid::of(&config.x, bandwidth_hz), y: PlannedPid::of(&config.y, bandwidth_hz) }
     }

@@ -1,6 +1,7 @@
 //! [`PointToPoint`]: the marking board's controller, which knows eight directions.
 
 use super::{DriveRamp, Equalizer, EqualizerSettings, LineController};
+use crate::config::OneBeltConfig;
 use crate::kinematics::BeltSigns;
 use crate::{Axis, Demand, Direction, Drive, Duty, Machine, StepPoint};
 use core::time::Duration;
@@ -99,9 +100,8 @@ impl PointToPointSettings {
     /// ```
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
-        let config = machine.config();
-        let from = &config.point_to_point;
-        let counts_per_mm = config.x.counts_per_mm;
+        let OneBeltConfig { dc, signs, point_to_point: from, .. } = OneBeltConfig::of(machine);
+        let counts_per_mm = dc.x.counts_per_mm;
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         let single = |value: f64| value as f32;
         let equalizer = EqualizerSettings {
@@ -111,7 +111,7 @@ impl PointToPointSettings {
             most_trim: single(from.equalizer_most_trim),
         };
         Self {
-            signs: config.kinematics.signs,
+            signs,
             allowed_counts: single(from.allowed_error_mm * counts_per_mm),
             ramp: DriveRamp {
                 start: single(from.drive_start),

@@ -1,5 +1,6 @@
 //! The semi-virtual gantry's controller: the published protocol on one side, two DC motors on the other.
 
+use crate::config::DcConfig;
 use crate::control::{AxisTrouble, ChosenController, LineController};
 use crate::protocol::Order;
 use crate::protocol::digits::{Dropped, Receiver, Reply};
@@ -136,7 +137,7 @@ impl GantrySettings {
     /// ```
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
-        let config = machine.config();
+        let (config, DcConfig { x, y, .. }) = (machine.config(), DcConfig::of(machine));
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -146,8 +147,8 @@ impl GantrySettings {
         Self {
             resync_gap_us,
             most: StepPoint::new(
-                crate::toolpath::from_mm(config.area.width_mm, config.x.counts_per_mm),
-                crate::toolpath::from_mm(config.area.height_mm, config.y.counts_per_mm),
+                crate::toolpath::from_mm(config.area.width_mm, x.counts_per_mm),
+                crate::toolpath::from_mm(config.area.height_mm, y.counts_per_mm),
             ),
         }
     }

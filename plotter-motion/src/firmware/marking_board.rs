@@ -1,5 +1,6 @@
 //! The marking board's controller: one belt, two DC motors, encoders that only count up.
 
+use crate::config::OneBeltConfig;
 use crate::control::{ChosenController, LineController, SpeedMeter};
 use crate::kinematics::{CoreXy, Kinematics};
 use crate::{
@@ -43,8 +44,8 @@ impl MarkingBoardSettings {
     /// with the 1930/s² of the simulated motors after a hundredth.
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
-        let config = machine.config();
-        let (unequal_share, run_down_ms) = match config.control.controller {
+        let (area, config) = (machine.config().area, OneBeltConfig::of(machine));
+        let (unequal_share, run_down_ms) = match config.dc.control.controller {
             ControllerChoice::Published => {
                 (config.point_to_point.unequal_share, config.point_to_point.run_down_ms)
             }
@@ -55,7 +56,7 @@ impl MarkingBoardSettings {
         Self {
             belt: CoreXy::of(machine),
             start: Point::new(config.belt.start_x_mm, config.belt.start_y_mm),
-            most: Point::new(config.area.width_mm, config.area.height_mm),
+            most: Point::new(area.width_mm, area.height_mm),
             unequal_share,
             run_down: Duration::from_secs_f64(run_down_ms * 1e-3),
             speed_window_mm_s: config.belt.speed_window_mm_s,
@@ -146,7 +147,9 @@ impl BoardMotor {
 /// # use plotter_motion::config::ControllerChoice;
 /// # use core::time::Duration;
 /// let mut config = MachineConfig::marking_board();
-/// config.control.controller = ControllerChoice::Published;
+/// if let Some(dc) = config.dc_mut() {
+///     dc.control.controller = ControllerChoice::Published;
+/// }
 /// let gate = SafetyGate::new(LimitSwitches::RELEASED, false); // what switches and button say
 /// let mut board = MarkingBoard::of(&Machine::new(config)?, gate);
 /// board.start(Duration::ZERO, PenMove { pen: Pen::Down, target: StepPoint::new(463, 463) }); // 10 mm to the right

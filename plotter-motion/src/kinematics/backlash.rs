@@ -6,6 +6,7 @@
 //!              play
 //! ```
 
+use crate::config::SteppersConfig;
 use crate::{Direction, Machine, StepPoint, config::StepperConfig, toolpath::from_mm};
 
 /// The play of both axes, in steps of their motors; 0 for none.
@@ -89,7 +90,8 @@ impl Backlash {
         let steps = |stepper: &StepperConfig| {
             u16::try_from(from_mm(stepper.backlash_mm, stepper.steps_per_mm)).unwrap_or(u16::MAX)
         };
-        Self { x_steps: steps(&machine.config().x.stepper), y_steps: steps(&machine.config().y.stepper) }
+        let SteppersConfig { x, y, .. } = SteppersConfig::of(machine);
+        Self { x_steps: steps(&x), y_steps: steps(&y) }
     }
 
     /// The next move, to the logical position `target`: how many extra steps each motor makes first, and

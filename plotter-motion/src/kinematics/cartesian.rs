@@ -1,6 +1,7 @@
 //! [`Cartesian`]: each motor moves one axis.
 
 use super::{Kinematics, MotorPoint};
+use crate::config::SteppersConfig;
 use crate::{Axis, Machine, Point, config::StepperConfig};
 use core::fmt;
 
@@ -114,7 +115,8 @@ impl Cartesian {
         let signed = |stepper: &StepperConfig| {
             if stepper.inverted { -stepper.steps_per_mm } else { stepper.steps_per_mm }
         };
-        Self { x: signed(&machine.config().x.stepper), y: signed(&machine.config().y.stepper) }
+        let SteppersConfig { x, y, .. } = SteppersConfig::of(machine);
+        Self { x: signed(&x), y: signed(&y) }
     }
 }
 

@@ -18,6 +18,7 @@
 
 use super::cartesian::{LEAST_STEPS_PER_MM, MOST_STEPS_PER_MM};
 use super::{Kinematics, MotorPoint, ScaleError};
+use crate::config::OneBeltConfig;
 use crate::{Axis, Machine, Point};
 use core::ops::{Add, Sub};
 
@@ -120,8 +121,8 @@ impl CoreXy {
     /// ```
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
-        let config = machine.config();
-        Self { signs: config.kinematics.signs, steps_per_mm: config.x.counts_per_mm }
+        let belt = OneBeltConfig::of(machine);
+        Self { signs: belt.signs, steps_per_mm: belt.dc.x.counts_per_mm }
     }
 
     /// Directions of the motors.

@@ -4,8 +4,8 @@ use super::{Modes, PlanError};
 #[cfg(feature = "averaged-steps")]
 use crate::config::JerkChoice;
 use crate::{
-    Machine, MachineConfig,
-    config::{AccelChoice, KinematicsChoice, PathChoice},
+    Machine,
+    config::{AccelChoice, PathChoice, PlannerConfig, SteppersConfig},
 };
 
 /// How nearly a path is followed.
@@ -67,22 +67,12 @@ pub enum JerkLimit {
 }
 
 impl AccelLimit {
-    /// The limit of a machine, by how its motors move the pen.
-    fn of(machine: &Machine) -> Self {
-        let MachineConfig { planner, kinematics, .. } = machine.config();
-        let (first, second) = (planner.accel_x_mm_s2, planner.accel_y_mm_s2);
-        match (planner.accel_limit, kinematics.kind) {
-            (AccelChoice::Vector, _) => Self::Vector,
-            (AccelChoice::Axes, KinematicsChoice::Cartesian) => {
-                Self::Axes { x_mm_s2: first, y_mm_s2: second }
-            }
-            (AccelChoice::Axes, KinematicsChoice::CoreXy) => {
-                // Which motor moves the sum is told by what both do for a step to the right and up.
-                let (sum_mm_s2, difference_mm_s2) = match kinematics.signs.motors(1, 1) {
-                    (0, _) => (second, first),
-                    _ => (first, second),
-                };
-                Self::Belts { sum_mm_s2, difference_mm_s2 }
+    /// The limit of a machine with stepper motors.
+    const fn of(planner: &PlannerConfig) -> Self {
+        match planner.accel_limit {
+            AccelChoice::Vector => Self::Vector,
+            AccelChoice::Axes => {
+                Self::Axes { x_mm_s2: planner.accel_x_mm_s2, y_mm_s2: planner.accel_y_mm_s2 }
             }
         }
     }
@@ -219,19 +209,22 @@ impl PlannerSettings {
     /// ```
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
-        let config = machine.config();
-        let planner = &config.planner;
+        Self::of_steppers(&SteppersConfig::of(machine))
+    }
+
+    pub(crate) fn of_steppers(steppers: &SteppersConfig) -> Self {
+        let SteppersConfig { planner, x, y, .. } = steppers;
         let path = match planner.mode {
             PathChoice::Exact => PathMode::Exact,
             PathChoice::Tolerance => PathMode::Tolerance { path_tolerance_mm: planner.path_tolerance_mm },
         };
-        let finest = config.x.stepper.steps_per_mm.max(config.y.stepper.steps_per_mm);
+        let finest = x.steps_per_mm.max(y.steps_per_mm);
         Self {
             path,
             speed_mm_s: planner.speed_mm_s,
             travel_speed_mm_s: planner.travel_speed_mm_s,
             accel_mm_s2: planner.accel_mm_s2,
-            accel_limit: AccelLimit::of(machine),
+            accel_limit: AccelLimit::of(planner),
             jerk_mm_s3: planner.s_curve.then_some(planner.jerk_mm_s3),
             junction_deviation_mm: planner.junction_deviation_mm,
             resolution_mm: 0.5 / finest,

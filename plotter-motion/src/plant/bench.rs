@@ -1,6 +1,7 @@
 //! A whole machine on the bench: host, serial line, controller, motors and encoders.
 
 use super::{AxisPlant, DriveDelay, SimulatedLine};
+use crate::config::DcConfig;
 use crate::control::LineController;
 use crate::firmware::{Gantry, LinkedGantry, Notice};
 use crate::protocol::{Host, HostEvent, HostSettings};
@@ -175,7 +176,7 @@ impl<I: Iterator<Item = PenMove>, C: BenchController> Bench<I, C> {
     /// The same with another controller, at rest at the origin.
     #[must_use]
     pub fn with_controller(machine: &Machine, settings: BenchSettings, controller: C, moves: I) -> Self {
-        let config = machine.config();
+        let (serial, DcConfig { x, y, .. }) = (machine.config().serial, DcConfig::of(machine));
         /// Shortest time step: the resolution of all recorded times.
         const SHORTEST: Duration = Duration::from_micros(1);
         const LONGEST: Duration = Duration::from_millis(1); // a few of the position loop's runs
@@ -185,7 +186,7 @@ impl<I: Iterator<Item = PenMove>, C: BenchController> Bench<I, C> {
             clippy::cast_sign_loss,
             reason = "a checked machine has 0 to 1000 ms"
         )]
-        let byte_gap = Duration::from_micros(libm::round(config.serial.byte_gap_ms * 1e3) as u64);
+        let byte_gap = Duration::from_micros(libm::round(serial.byte_gap_ms * 1e3) as u64);
         let axis = |axis| AxisPlant::new(axis, time_step.as_secs_f64());
         let pwm_steps =
             |axis: &crate::config::AxisConfig| u16::try_from(axis.motor.pwm_steps).unwrap_or(u16::MAX);
@@ -196,12 +197,12 @@ impl<I: Iterator<Item = PenMove>, C: BenchController> Bench<I, C> {
             controller,
             ticked: None,
             delay: DriveDelay::of(machine),
-            x: axis(&config.x),
-            y: axis(&config.y),
-            to_controller: SimulatedLine::new(config.serial.baud),
-            to_host: SimulatedLine::new(config.serial.baud),
+            x: axis(&x),
+            y: axis(&y),
+            to_controller: SimulatedLine::new(serial.baud),
+            to_host: SimulatedLine::new(serial.baud),
             edges: VecDeque::new(),
-            pwm_steps: [pwm_steps(&config.x), pwm_steps(&config.y)],
+            pwm_steps: [pwm_steps(&x), pwm_steps(&y)],
             drive: [0; 2],
         }
     }

@@ -1,5 +1,6 @@
 //! [`DriveDelay`]: what a controller asks for now, a motor gets later.
 
+use crate::config::DcConfig;
 use crate::{Drive, Duty, Machine};
 use core::time::Duration;
 
@@ -42,7 +43,7 @@ impl DriveDelay {
     /// The delay of a machine: `control.latency_periods` periods of its control loop.
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
-        let control = &machine.config().control;
+        let control = DcConfig::of(machine).control;
         let period = Duration::from_secs_f64(1.0 / control.contouring.loop_hz);
         Self::new(period * control.latency_periods)
     }

@@ -1,6 +1,7 @@
 //! A simulated marking board: two unequal motors on one belt, and rails that do not slide alike.
 
 use super::dc_motor::{DcMotor, DcMotorState};
+use crate::config::{DcConfig, OneBeltConfig};
 use crate::kinematics::{CoreXy, Kinematics, MotorPoint};
 use crate::{
     Axis, Duty, LimitSwitches, Machine, Point,
@@ -39,17 +40,17 @@ impl MarkingBoardPlantSettings {
     /// less than a thousandth of the documented board's gear.
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
-        let config = machine.config();
-        let belt = &config.belt;
+        let OneBeltConfig { dc: DcConfig { x, y, .. }, belt, .. } = OneBeltConfig::of(machine);
+        let area = machine.config().area;
         Self {
             belt: CoreXy::of(machine),
-            motors: [(config.x.motor, config.x.load), (config.y.motor, config.y.load)],
-            pulses_per_turn: config.x.counts_per_turn(),
+            motors: [(x.motor, x.load), (y.motor, y.load)],
+            pulses_per_turn: x.counts_per_turn(),
             phases: [0.5, 0.5],
             x_rail_n: [belt.x_rail_coulomb_n, belt.x_rail_static_n],
             y_rail_n: [belt.y_rail_coulomb_n, belt.y_rail_static_n],
             start: Point::new(belt.start_x_mm, belt.start_y_mm),
-            most: Point::new(config.area.width_mm, config.area.height_mm),
+            most: Point::new(area.width_mm, area.height_mm),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! [`BacklashSteps`]: the extra steps of axes with play, between the steps of a path.
 
 use super::{MotorEvent, TimedEvent};
+use crate::config::SteppersConfig;
 use crate::kinematics::Backlash;
 use crate::{Machine, StepPair};
 
@@ -51,7 +52,7 @@ impl BacklashSteps {
     /// clock of `clock_hz`.
     #[must_use]
     pub fn of(machine: &Machine, clock_hz: f64) -> Self {
-        let (x, y) = (&machine.config().x.stepper, &machine.config().y.stepper);
+        let SteppersConfig { x, y, .. } = SteppersConfig::of(machine);
         let steps =
             |mm: f64, per_mm: f64| u16::try_from(crate::toolpath::from_mm(mm, per_mm)).unwrap_or(u16::MAX);
         let play = Backlash {

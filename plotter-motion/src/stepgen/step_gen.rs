@@ -3,6 +3,7 @@
 use super::chord::Chords;
 use super::moment::Moment;
 use super::slice::{Slice, speed_fixed};
+use crate::config::SteppersConfig;
 use crate::extremes::greatest;
 use crate::geom::single;
 use crate::kinematics::Kinematics;
@@ -52,7 +53,7 @@ impl StepGenSettings {
     /// Those of a machine with stepper motors, in microseconds.
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
-        let config = machine.config();
+        let config = SteppersConfig::of(machine);
         Self {
             pen_settle: Duration::from_secs_f64(config.pen.settle_ms / 1e3),
             laser: config.laser.enabled,

@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn the_play_of_an_axis_is_taken_up() {
         let mut config = MachineConfig::stepper_plotter();
-        config.x.stepper.backlash_mm = 0.1; // 8.758 steps: 9
+        config.steppers_mut().unwrap().x.backlash_mm = 0.1; // 8.758 steps: 9
         let machine = Machine::new(config).unwrap();
         let to = |x| PlotOp::Draw { to: Point::new(x, 0.0), feed_mm_s: None };
         let mut steps = [0, 0];

@@ -1,6 +1,7 @@
 //! [`TestBed`]: a controller on simulated motors, and how far from the line the pen truly was.
 
 use super::{Figures, HandlingTimes, LateLoop, misjudged};
+use crate::config::DcConfig;
 use crate::control::LineController;
 use crate::plant::{AxisPlant, DriveDelay};
 use crate::{
@@ -130,7 +131,7 @@ impl TestBed {
     /// The machine's place that is nearest to a place on the sheet, in encoder counts.
     #[must_use]
     pub fn counts(&self, at: Point) -> StepPoint {
-        let config = self.machine.config();
+        let config = DcConfig::of(&self.machine);
         StepPoint::new(
             crate::toolpath::from_mm(at.x, config.x.counts_per_mm),
             crate::toolpath::from_mm(at.y, config.y.counts_per_mm),
@@ -180,7 +181,7 @@ impl TestBed {
     }
 
     fn on_sheet(&self, [x, y]: [f64; 2]) -> Point {
-        let config = self.machine.config();
+        let config = DcConfig::of(&self.machine);
         Point::new(x / config.x.counts_per_mm, y / config.y.counts_per_mm)
     }
 }
@@ -224,7 +225,7 @@ const MOST_EDGES: usize = 64;
 
 impl<'a, C: LineController + ?Sized> Run<'a, C> {
     fn new(bed: &'a TestBed, controller: &'a mut C) -> Self {
-        let config = bed.machine.config();
+        let config = DcConfig::of(&bed.machine);
         let dt_s = bed.settings.time_step.as_secs_f64();
         Self {
             bed,

@@ -2,6 +2,7 @@
 
 use super::{Drawing, Figures, Moment, TestBed};
 use crate::Machine;
+use crate::config::DcConfig;
 use crate::control::{
     ContourController, Contouring, CrossCoupled, CrossCoupledSettings, DriveRamp, LearnedBin, Learning,
     LearningSettings, LineController, LineTracking, LineTrackingSettings, PerAxis, PlannedLine, PlannedPid,
@@ -132,7 +133,7 @@ fn point_to_point(machine: &Machine) -> PointToPointSettings {
     /// Allowed error, mm. Source: Khan and McGinn, "2D Controlled Marking Board", which draws its circle with
     /// it.
     const ALLOWED_MM: f64 = 0.45;
-    let config = machine.config();
+    let config = DcConfig::of(machine);
     let counts_per_mm = config.x.counts_per_mm.min(config.y.counts_per_mm);
     #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
     let (allowed_counts, feed) =

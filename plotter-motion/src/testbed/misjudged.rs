@@ -19,9 +19,9 @@ use crate::{ConfigError, Machine};
 /// y. Encoders, gears and supplies are known.
 ///
 /// ```
-/// # use plotter_motion::{Machine, MachineConfig, testbed::misjudged};
+/// # use plotter_motion::{Machine, MachineConfig, config::DcConfig, testbed::misjudged};
 /// let described = misjudged(&Machine::new(MachineConfig::default())?, 0.25)?;
-/// let config = described.config();
+/// let config = DcConfig::of(&described);
 /// assert!((config.x.motor.torque_n_m_per_a / 13.4e-3 - 1.2).abs() < 1e-12);
 /// assert!((config.y.load.coulomb_n_m / 1.3e-3 - 1.3).abs() < 1e-12);
 /// # Ok::<(), plotter_motion::ConfigError>(())
@@ -33,7 +33,9 @@ use crate::{ConfigError, Machine};
 /// not be strong enough.
 pub fn misjudged(machine: &Machine, share: f64) -> Result<Machine, ConfigError> {
     let mut config = *machine.config();
-    for (axis, sign) in [(&mut config.x, -share), (&mut config.y, share)] {
+    // Stepper motors are not judged.
+    let Some(dc) = config.dc_mut() else { return Machine::new(config) };
+    for (axis, sign) in [(&mut dc.x, -share), (&mut dc.y, share)] {
         let (motor, load, transmission) = (&mut axis.motor, &mut axis.load, &mut axis.transmission);
         transmission.carriage_kg *= 1.0 + sign;
         transmission.rail_friction_n *= 1.0 + 1.2 * sign;

@@ -1,5 +1,6 @@
 //! From a tool path to the targets of a machine that takes them one by one.
 
+use crate::config::DcConfig;
 use crate::{
     Axis, Machine, Pen, PenMove, PlotOp, Point, StepPoint,
     toolpath::{chords, from_mm},
@@ -63,10 +64,10 @@ pub fn targets<I: IntoIterator<Item = PlotOp>>(
     machine: &Machine,
     ops: I,
 ) -> impl Iterator<Item = Result<PenMove, OutOfReach>> + use<I> {
-    let config = *machine.config();
+    let (area, DcConfig { x, y, .. }) = (machine.config().area, DcConfig::of(machine));
     let mut position = StepPoint::default();
     let mut lost = false;
-    let tolerance_mm = 0.5 / config.x.counts_per_mm.max(config.y.counts_per_mm);
+    let tolerance_mm = 0.5 / x.counts_per_mm.max(y.counts_per_mm);
     chords(ops, tolerance_mm).enumerate().filter_map(move |(index, op)| {
         let (pen, point) = match op {
             PlotOp::Travel { to } => (Pen::Up, to),
@@ -80,16 +81,13 @@ pub fn targets<I: IntoIterator<Item = PlotOp>>(
                 && coordinate.is_finite();
             (!inside).then_some(OutOfReach { index, point, axis, most_mm })
         };
-        if let Some(error) = outside(Axis::X, point.x, config.area.width_mm, config.x.counts_per_mm)
-            .or_else(|| outside(Axis::Y, point.y, config.area.height_mm, config.y.counts_per_mm))
+        if let Some(error) = outside(Axis::X, point.x, area.width_mm, x.counts_per_mm)
+            .or_else(|| outside(Axis::Y, point.y, area.height_mm, y.counts_per_mm))
         {
             lost = true;
             return Some(Err(error));
         }
-        let target = StepPoint::new(
-            from_mm(point.x, config.x.counts_per_mm),
-            from_mm(point.y, config.y.counts_per_mm),
-        );
+        let target = StepPoint::new(from_mm(point.x, x.counts_per_mm), from_mm(point.y, y.counts_per_mm));
         let pen = if core::mem::take(&mut lost) { Pen::Up } else { pen };
         let stays = pen == Pen::Up && target == position;
         position = target;

@@ -39,8 +39,12 @@ fn a_slip_of_the_pen_is_understood() {
 }
 
 #[test]
-fn a_key_of_an_older_file_is_told_what_it_is_called_today() {
-    assert_snapshot!(message("[vectorize]\ncurves = true"), @r#"line 3, column 1: unknown key `vectorize.curves`; write `pieces = "cubics"` for `curves = true`, and nothing for `curves = false`"#);
+fn a_section_of_another_crate_is_taken_unread_by_its_name_alone() {
+    for section in ["vectorize", "sheet", "follower"] {
+        assert_eq!(message(&format!("[{section}]\nsped = -1")), "accepted");
+    }
+    assert_snapshot!(message("[vektorize]"), @"line 2, column 2: unknown key `vektorize`; did you mean `vectorize`?");
+    assert_snapshot!(message("sheet = 3"), @"line 2, column 9: sheet: a whole number; it is a table: write [sheet], and its keys on the lines below");
 }
 
 #[test]
@@ -95,6 +99,27 @@ fn what_does_not_go_with_a_belt_is_named_with_its_line() {
     assert_snapshot!(message("[belt]\nstart_x_cm = 15"), @"line 3, column 1: unknown key `belt.start_x_cm`; the unit here is mm: write `start_x_mm = 150`");
     assert_snapshot!(message("[point_to_point]\nallowed_error_mm = 0"), @"line 3, column 20: point_to_point.allowed_error_mm: 0 mm lies outside 0.001..=100 mm; the documented marking board has 0.45");
     assert_snapshot!(message("belt.x_rail_coulomb_kn = 1"), @"line 2, column 6: unknown key `belt.x_rail_coulomb_kn`; did you mean `x_rail_coulomb_n`?");
+}
+
+#[test]
+fn a_machine_is_checked_by_its_kind_of_motor_only() {
+    let stepper = "drive = \"stepper\"\narea = { width_mm = 380, height_mm = 310 }\n";
+    // No DC motor would do.
+    let motor = "y.load.static_n_m = 0.0";
+    assert_eq!(message(&format!("{stepper}{motor}")), "accepted");
+    assert_snapshot!(message(motor), @"line 2, column 21: y.load.static_n_m: 0 N m must be at least 0.0013 N m; friction at rest is never less than coulomb_n_m, the friction in motion");
+    assert_eq!(message("planner.speed_mm_s = 10000.0"), "accepted");
+    // A cartesian machine reads no belt.
+    assert_eq!(message("belt.start_x_mm = 1000\ny.counts_per_mm = 20"), "accepted");
+    // What is not read lies in its range all the same.
+    assert!(message(&format!("{stepper}belt.start_x_mm = -1")).contains("lies outside 0..=100000 mm"));
+}
+
+#[test]
+fn what_a_machine_does_not_read_is_checked_before_it_is_left_out() {
+    let read = |rest: &str| plotter_motion::MachineConfig::from_toml(&format!("schema = 1\n{rest}\n"));
+    assert_eq!(read("pen.up_deg = 120"), Ok(plotter_motion::MachineConfig::default()));
+    assert_snapshot!(read("pen.up_deg = 271").unwrap_err(), @"line 2, column 14: pen.up_deg: 271 deg lies outside 0..=270 deg; a common servo turns from 0 to 180");
 }
 
 #[test]

@@ -49,11 +49,12 @@ fn plasma_follower() -> MachineConfig {
     let mut config = MachineConfig::stepper_plotter();
     config.name = MachineName::new("plasma-follower").unwrap_or(config.name);
     (config.area.width_mm, config.area.height_mm) = (1000.0, 500.0);
-    (config.planner.speed_mm_s, config.planner.travel_speed_mm_s) = (18.0, 80.0);
-    config.pen.settle_ms = 800.0;
-    (config.homing.known_travel_mm, config.homing.max_travel_mm) = (450.0, 1100.0);
-    for axis in [&mut config.x, &mut config.y] {
-        (axis.stepper.steps_per_mm, axis.stepper.backlash_mm) = (80.0, 0.3);
+    let steppers = config.steppers_mut().unwrap();
+    (steppers.planner.speed_mm_s, steppers.planner.travel_speed_mm_s) = (18.0, 80.0);
+    steppers.pen.settle_ms = 800.0;
+    (steppers.homing.known_travel_mm, steppers.homing.max_travel_mm) = (450.0, 1100.0);
+    for axis in [&mut steppers.x, &mut steppers.y] {
+        (axis.steps_per_mm, axis.backlash_mm) = (80.0, 0.3);
     }
     config
 }

@@ -200,7 +200,8 @@ fn the_time_is_estimated_to_the_tick() {
 
 fn machine(change: impl FnOnce(&mut MachineConfig)) -> Machine {
     let mut config = MachineConfig::stepper_plotter();
-    (config.planner.mode, config.planner.s_curve) = (config::PathChoice::Tolerance, true);
+    (config.steppers_mut().unwrap().planner.mode, config.steppers_mut().unwrap().planner.s_curve) =
+        (config::PathChoice::Tolerance, true);
     change(&mut config);
     Machine::new(config).unwrap()
 }
@@ -220,7 +221,9 @@ fn the_events_of_a_machine_of_a_file_are_averaged_too_and_take_the_time_that_is_
     // The last thing is a travel, whose last step comes before its end.
     let left = total.saturating_sub(Duration::from_micros(last.tick));
     assert!(left > Duration::ZERO && left < Duration::from_millis(60), "{total:?} {last:?}");
-    let other = self::machine(|config| config.planner.jerk_limit = Some(config::JerkChoice::Path));
+    let other = self::machine(|config| {
+        config.steppers_mut().unwrap().planner.jerk_limit = Some(config::JerkChoice::Path)
+    });
     assert!(events(&other) != found);
 }
 

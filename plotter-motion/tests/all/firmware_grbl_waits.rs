@@ -417,7 +417,8 @@ fn by_inverse_time_a_line_takes_its_time_however_long_it_is() {
 #[test]
 fn a_pen_on_the_z_axis_is_lifted_by_the_height_that_the_file_of_the_machine_names() {
     let mut config = MachineConfig::stepper_plotter();
-    (config.pen.lifted_by, config.pen.down_z_mm) = (PenLift::Height, 0.5);
+    (config.steppers_mut().unwrap().pen.lifted_by, config.steppers_mut().unwrap().pen.down_z_mm) =
+        (PenLift::Height, 0.5);
     let machine = Machine::new(config).unwrap();
     let mut bench = Bench::new(StepperPlotterSettings::of(&machine, Dialect::Grbl));
     bench.ask("");

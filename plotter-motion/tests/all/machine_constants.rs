@@ -51,34 +51,43 @@ fn machine(config: MachineConfig, change: impl FnOnce(&mut MachineConfig)) -> Ma
 /// laser.
 fn every_mode() -> Machine {
     machine(MachineConfig::stepper_plotter(), |config| {
-        config.planner.mode = PathChoice::Tolerance;
-        config.planner.s_curve = true;
-        config.planner.jerk_limit = Some(JerkChoice::Path);
-        config.planner.accel_limit = AccelChoice::Axes;
-        config.x.stepper.backlash_mm = 0.1;
-        config.y.stepper.inverted = true;
-        config.laser.enabled = true;
+        config.steppers_mut().unwrap().planner.mode = PathChoice::Tolerance;
+        config.steppers_mut().unwrap().planner.s_curve = true;
+        config.steppers_mut().unwrap().planner.jerk_limit = Some(JerkChoice::Path);
+        config.steppers_mut().unwrap().planner.accel_limit = AccelChoice::Axes;
+        config.steppers_mut().unwrap().x.backlash_mm = 0.1;
+        config.steppers_mut().unwrap().y.inverted = true;
+        config.steppers_mut().unwrap().laser.enabled = true;
     })
 }
 
 /// With the jerk limited as a vector.
 fn averaged() -> Machine {
     machine(MachineConfig::stepper_plotter(), |config| {
-        config.planner.mode = PathChoice::Tolerance;
-        config.planner.s_curve = true;
+        config.steppers_mut().unwrap().planner.mode = PathChoice::Tolerance;
+        config.steppers_mut().unwrap().planner.s_curve = true;
     })
 }
 
 /// With a third axis that is homed, and two motors on y.
 fn three_axes() -> Machine {
     machine(MachineConfig::stepper_plotter(), |config| {
-        (config.z.enabled, config.z.homes, config.z.lifts_pen) = (true, true, true);
-        (config.second_motor.axis, config.second_motor.offset_mm) = (SecondMotorChoice::Y, -0.5);
+        (
+            config.steppers_mut().unwrap().z.enabled,
+            config.steppers_mut().unwrap().z.homes,
+            config.steppers_mut().unwrap().z.lifts_pen,
+        ) = (true, true, true);
+        (
+            config.steppers_mut().unwrap().second_motor.axis,
+            config.steppers_mut().unwrap().second_motor.offset_mm,
+        ) = (SecondMotorChoice::Y, -0.5);
     })
 }
 
 fn lifted_by_height() -> Machine {
-    machine(MachineConfig::stepper_plotter(), |config| config.pen.lifted_by = PenLift::Height)
+    machine(MachineConfig::stepper_plotter(), |config| {
+        config.steppers_mut().unwrap().pen.lifted_by = PenLift::Height
+    })
 }
 
 #[track_caller]
@@ -98,15 +107,22 @@ fn is_settings_of(name: &str, machine: &Machine, dialect: Dialect, settings: &St
 
 #[test]
 fn a_gantry_is_what_its_file_says() {
-    let machine =
-        machine(MachineConfig::default(), |config| config.control.controller = ControllerChoice::Contouring);
+    let machine = machine(MachineConfig::default(), |config| {
+        config.dc_mut().unwrap().control.controller = ControllerChoice::Contouring
+    });
     let config = machine.config();
     is_golden("contouring", &build::gantry(&machine).unwrap());
-    assert_eq!((contouring::gantry::X, contouring::gantry::Y), (config.x, config.y));
-    assert_eq!(contouring::gantry::DECODING, [config.x.encoder.decoding, config.y.encoder.decoding]);
+    assert_eq!(
+        (contouring::gantry::X, contouring::gantry::Y),
+        (config.dc().unwrap().x, config.dc().unwrap().y)
+    );
+    assert_eq!(
+        contouring::gantry::DECODING,
+        [config.dc().unwrap().x.encoder.decoding, config.dc().unwrap().y.encoder.decoding]
+    );
     assert_eq!(
         contouring::gantry::PWM_STEPS.map(u32::from),
-        [config.x.motor.pwm_steps, config.y.motor.pwm_steps]
+        [config.dc().unwrap().x.motor.pwm_steps, config.dc().unwrap().y.motor.pwm_steps]
     );
     assert_eq!(contouring::gantry::BAUD, config.serial.baud);
     let gate = || SafetyGate::new(LimitSwitches::RELEASED, false);
@@ -118,8 +134,9 @@ fn a_gantry_is_what_its_file_says() {
 
 #[test]
 fn the_published_controller_is_the_one_that_the_file_names() {
-    let machine =
-        machine(MachineConfig::default(), |config| config.control.controller = ControllerChoice::Published);
+    let machine = machine(MachineConfig::default(), |config| {
+        config.dc_mut().unwrap().control.controller = ControllerChoice::Published
+    });
     is_golden("published", &build::gantry(&machine).unwrap());
     let gate = || SafetyGate::new(LimitSwitches::RELEASED, false);
     let controller = control::LineTracking::with_settings(control::LineTrackingSettings::of(&machine));

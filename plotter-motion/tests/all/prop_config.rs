@@ -49,7 +49,7 @@ static_n_m = 1.3e-3
 const MAY_BE_NEGATIVE: [&str; 2] = ["pen.down_z_mm", "second_motor.offset_mm"];
 
 /// Numeric keys that the machine has once.
-const OF_THE_MACHINE: [&str; 70] = [
+const OF_THE_MACHINE: [&str; 58] = [
     "schema",
     "area.width_mm",
     "area.height_mm",
@@ -108,18 +108,6 @@ const OF_THE_MACHINE: [&str; 70] = [
     "stepper_motor.inertia_kg_m2",
     "stepper_motor.coulomb_n_m",
     "stepper_motor.viscous_n_m_s",
-    "vectorize.max_error_px",
-    "vectorize.pens",
-    "vectorize.hatch_mm",
-    "vectorize.max_line_px",
-    "vectorize.pen_mm",
-    "vectorize.threads",
-    "sheet.frame_mm",
-    "sheet.begin_mm",
-    "sheet.cut_window_mm",
-    "sheet.cut_clear_mm",
-    "sheet.anchor_mm",
-    "sheet.sensing_mm_s",
 ];
 
 /// Numeric keys of a machine with a belt.
@@ -177,16 +165,13 @@ const OF_AN_AXIS: [&str; 22] = [
 ];
 
 /// Keys whose number must be whole.
-const WHOLE: [&str; 11] = [
+const WHOLE: [&str; 8] = [
     "schema",
     "serial.baud",
     "control.latency_periods",
     "laser.full_power",
     "stepper_motor.full_steps_per_turn",
     "stepper_motor.microsteps",
-    "vectorize.pens",
-    "vectorize.max_line_px",
-    "vectorize.threads",
     "encoder.lines_per_turn",
     "motor.pwm_steps",
 ];
@@ -298,18 +283,4 @@ proptest! {
         });
         prop_assert_eq!(by_config, by_file);
     }
-}
-
-#[test]
-fn pens_are_a_number_auto_or_a_palettes_file() {
-    use plotter_motion::config::{FileName, PensChoice};
-    let pens = |value: &str| with("vectorize.pens", value).map(|machine| machine.config().vectorize.pens);
-    assert_eq!(pens("3"), Ok(PensChoice::Count(3)));
-    assert_eq!(pens("\"auto\""), Ok(PensChoice::Auto));
-    assert_eq!(pens("\"pens.toml\""), Ok(PensChoice::Palette(FileName::new("pens.toml").unwrap())));
-    assert!(is_out_of_range(&with("vectorize.pens", "17")));
-    let said = pens("\"three\"").unwrap_err().to_string();
-    assert!(said.starts_with("line 2, column 18: vectorize.pens") && said.contains("\"auto\""), "{said}");
-    let long = format!("\"{}.toml\"", "x".repeat(FileName::MAX_BYTES));
-    assert!(pens(&long).is_err() && with("vectorize.overlay", &long).is_err());
 }

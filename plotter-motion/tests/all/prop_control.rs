@@ -40,9 +40,10 @@ fn pause() -> impl Strategy<Value = Duration> {
 #[expect(clippy::unwrap_used, reason = "a test may panic")]
 fn machine(choice: ControllerChoice, decoding: Decoding, settle_ms: f64) -> Machine {
     let mut config = MachineConfig::default();
-    config.control.controller = choice;
-    config.control.contouring.settle_ms = settle_ms;
-    for axis in [&mut config.x, &mut config.y] {
+    config.dc_mut().unwrap().control.controller = choice;
+    config.dc_mut().unwrap().control.contouring.settle_ms = settle_ms;
+    let dc = config.dc_mut().unwrap();
+    for axis in [&mut dc.x, &mut dc.y] {
         axis.encoder.decoding = decoding;
     }
     Machine::new(config).unwrap()

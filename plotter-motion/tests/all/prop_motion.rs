@@ -232,7 +232,7 @@ proptest! {
     ) {
         let mut config = MachineConfig::default();
         if published {
-            config.control.controller = ControllerChoice::Published;
+            config.dc_mut().unwrap().control.controller = ControllerChoice::Published;
         }
         let mut gantry = Gantry::new(&Machine::new(config).unwrap(), SafetyGate::new(LimitSwitches::RELEASED, false));
         let mut now = Duration::ZERO;

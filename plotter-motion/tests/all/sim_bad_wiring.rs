@@ -91,8 +91,9 @@ fn draw(machine: &Machine, fault: Fault) -> Outcome {
     let config = machine.config();
     let from = if fault == Fault::CrossedWires { Duration::ZERO } else { Duration::from_millis(150) };
     let to = from + Duration::from_secs(1);
-    let mut axes = [&config.x, &config.y].map(|axis| AxisPlant::new(axis, STEP.as_secs_f64()));
-    let mut decoder = match config.x.encoder.decoding {
+    let mut axes = [&config.dc().unwrap().x, &config.dc().unwrap().y]
+        .map(|axis| AxisPlant::new(axis, STEP.as_secs_f64()));
+    let mut decoder = match config.dc().unwrap().x.encoder.decoding {
         Decoding::X4 => Decoder::X4(QuadratureX4::new(axes[0].phases())),
         _ => Decoder::X1(QuadratureX1::new(axes[0].phases())),
     };
@@ -108,7 +109,8 @@ fn draw(machine: &Machine, fault: Fault) -> Outcome {
     let mut differs_since = None;
     let mut last_x = 0.0;
     for (x_mm, y_mm) in PLACES_MM {
-        let counts = |mm: i32| plotter_motion::toolpath::from_mm(f64::from(mm), config.x.counts_per_mm);
+        let counts =
+            |mm: i32| plotter_motion::toolpath::from_mm(f64::from(mm), config.dc().unwrap().x.counts_per_mm);
         let demand = bench.controller.start(now, StepPoint::new(counts(x_mm), counts(y_mm)));
         bench.apply(demand);
         let begun = now;
@@ -152,13 +154,14 @@ fn draw(machine: &Machine, fault: Fault) -> Outcome {
             let x_mm = axes[0].position_mm();
             let counted = f64::from(bench.controller.position().x);
             // of the shaft: what play and belt keep back no encoder on a motor sees
-            let astray_mm = (axes[0].position_counts() - counted).abs() / config.x.counts_per_mm;
+            let astray_mm =
+                (axes[0].position_counts() - counted).abs() / config.dc().unwrap().x.counts_per_mm;
             let makes_a_difference = match fault {
                 Fault::None | Fault::LookedFor => false,
                 Fault::CrossedWires | Fault::Held | Fault::HalfTheSupply => {
                     (is_on || fault == Fault::CrossedWires) && bench.duties[0].value() != 0.0
                 }
-                _ => is_on && astray_mm > 2.0 / config.x.counts_per_mm,
+                _ => is_on && astray_mm > 2.0 / config.dc().unwrap().x.counts_per_mm,
             };
             if makes_a_difference && differs_since.is_none() {
                 differs_since = Some(now);
@@ -220,7 +223,7 @@ fn told(fault: Fault) -> [Option<Trouble>; 5] {
         // never a run-away: not much faster than the feed, and what a motor runs down from it; the worn
         // gantry starts so gently that it takes longer to see that it goes the wrong way
         let (feeds, most_mm) = if name == "worn-gantry" { (2.0, 30.0) } else { (1.6, 20.0) };
-        let feed_mm_s = machine.config().control.contouring.feed_mm_s;
+        let feed_mm_s = machine.config().dc().unwrap().control.contouring.feed_mm_s;
         assert!(outcome.fastest_mm_s < feeds * feed_mm_s, "{name}, {fault:?}: {} mm/s", outcome.fastest_mm_s);
         assert!(outcome.astray_mm < most_mm, "{name}, {fault:?}: {} mm", outcome.astray_mm);
         told.map(|(trouble, _)| trouble)

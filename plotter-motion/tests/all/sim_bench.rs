@@ -20,7 +20,7 @@ fn square() -> Vec<PenMove> {
 #[expect(clippy::unwrap_used, reason = "a test may panic")]
 fn machine(choice: ControllerChoice) -> Machine {
     let mut config = MachineConfig::default();
-    config.control.controller = choice;
+    config.dc_mut().unwrap().control.controller = choice;
     Machine::new(config).unwrap()
 }
 

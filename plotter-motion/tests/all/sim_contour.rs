@@ -105,7 +105,8 @@ fn the_published_rule_never_ends_on_steep_lines_with_unloaded_motors_and_ours_do
     const STUCK_MM: f64 = 0.5;
     let unloaded = |choice| {
         let mut config = machine(choice);
-        for axis in [&mut config.x, &mut config.y] {
+        let dc = config.dc_mut().unwrap();
+        for axis in [&mut dc.x, &mut dc.y] {
             axis.load =
                 LoadConfig { inertia_kg_m2: 0.0, coulomb_n_m: 0.0, static_n_m: 0.0, viscous_n_m_s: 0.0 };
         }
@@ -132,7 +133,8 @@ fn x2_and_x4_encoders_of_as_much_fewer_lines_do_as_well() {
         [("contouring, x2", 250, Decoding::X2), ("contouring, x4", 125, Decoding::X4)]
     {
         let mut ours = machine(ControllerChoice::Contouring);
-        for axis in [&mut ours.x, &mut ours.y] {
+        let dc = ours.dc_mut().unwrap();
+        for axis in [&mut dc.x, &mut dc.y] {
             axis.encoder = EncoderConfig { lines_per_turn, decoding };
         }
         for line in &run(name, &ours, &ours, &HEADINGS_DEG) {
@@ -150,7 +152,8 @@ fn a_motor_that_differs_from_its_description_stays_within_its_counts() {
         let ours = machine(ControllerChoice::Contouring);
         let mut plant = ours;
         // x heavier, rougher and weaker, y lighter, smoother and stronger, and a flat battery for both
-        for (axis, sign) in [(&mut plant.x, share), (&mut plant.y, -share)] {
+        let dc = plant.dc_mut().unwrap();
+        for (axis, sign) in [(&mut dc.x, share), (&mut dc.y, -share)] {
             axis.load.coulomb_n_m *= 1.0 + 2.0 * sign;
             axis.load.static_n_m *= 1.0 + 2.0 * sign;
             axis.load.inertia_kg_m2 = 0.0;

@@ -71,8 +71,8 @@ fn line(is_loaded: bool, decoding: Decoding, off: f64, seed: u64, limit: Duratio
     let mut chance = Chance(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
     let config = described(is_loaded, decoding);
     let mut plant = config;
-    plant.x = as_it_is(&config.x, off, &mut chance);
-    plant.y = as_it_is(&config.y, off, &mut chance);
+    plant.dc_mut().unwrap().x = as_it_is(&config.dc().unwrap().x, off, &mut chance);
+    plant.dc_mut().unwrap().y = as_it_is(&config.dc().unwrap().y, off, &mut chance);
     let mut closed_loop = Loop::new(&config, &plant);
     // Somebody has turned the shafts before the machine was switched on: their counts begin anywhere.
     let mut begun = [0.0; 2];
@@ -86,7 +86,7 @@ fn line(is_loaded: bool, decoding: Decoding, off: f64, seed: u64, limit: Duratio
         }
         *begun = axis.position_counts();
     }
-    let length = 60.0_f64.powf(chance.share()) * config.x.counts_per_mm;
+    let length = 60.0_f64.powf(chance.share()) * config.dc().unwrap().x.counts_per_mm;
     let heading = chance.between(0.0, std::f64::consts::TAU);
     let target = StepPoint::new((length * heading.cos()) as i32, (length * heading.sin()) as i32);
     closed_loop.start(target);
@@ -173,7 +173,7 @@ fn a_line_held_at_its_end_ends_when_it_is_let_go() {
     const LET_GO: Duration = Duration::from_millis(1500);
     for decoding in [Decoding::X1, Decoding::X4] {
         let config = described(true, decoding);
-        let length = (20.0 * config.x.counts_per_mm) as i32;
+        let length = (20.0 * config.dc().unwrap().x.counts_per_mm) as i32;
         let mut closed_loop = Loop::new(&config, &config);
         closed_loop.start(StepPoint::new(length, length / 2));
         while !closed_loop.controller.has_arrived() && closed_loop.now < LET_GO * 2 {

@@ -24,7 +24,7 @@ fn machine() -> Machine {
 /// met twice.
 fn published() -> Machine {
     let mut config = MachineConfig::default();
-    config.control.controller = ControllerChoice::Published;
+    config.dc_mut().unwrap().control.controller = ControllerChoice::Published;
     Machine::new(config).unwrap()
 }
 

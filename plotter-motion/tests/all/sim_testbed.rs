@@ -22,7 +22,7 @@ fn described(decoding: Decoding) -> MachineConfig {
     config.name = MachineName::new("loaded-gantry").unwrap();
     if decoding == Decoding::X4 {
         config.name = MachineName::new("loaded-gantry-x4").unwrap();
-        let contouring = &mut config.control.contouring;
+        let contouring = &mut config.dc_mut().unwrap().control.contouring;
         (contouring.bandwidth_hz, contouring.observer_hz) = (100.0, 500.0);
     }
     config

@@ -387,20 +387,22 @@ fn an_axis_that_is_held_on_the_way_ends_the_experiment() {
 #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn contouring_keeps_the_line_within_its_gain_margin_and_finds_out_a_motor_beyond_it() {
     let mut described = MachineConfig::default();
-    for axis in [&mut described.x, &mut described.y] {
+    let dc = described.dc_mut().unwrap();
+    for axis in [&mut dc.x, &mut dc.y] {
         axis.encoder = EncoderConfig { lines_per_turn: 2000, decoding: Decoding::X4 };
         axis.counts_per_mm = 640.0;
     }
     (described.area.width_mm, described.area.height_mm) = (100.0, 100.0);
-    described.sync_stop.offset_counts = 160.0; // the same 0.25 mm
-    let process = IntegratingProcess::of(&described.x);
-    let stiff = ContouringBandwidth::tune(&described.x, &process, TICK_S, 2.0).unwrap();
-    described.control.contouring.bandwidth_hz = stiff.bandwidth_hz;
-    described.control.contouring.observer_hz = stiff.observer_hz;
+    described.dc_mut().unwrap().sync_stop.offset_counts = 160.0; // the same 0.25 mm
+    let process = IntegratingProcess::of(&described.dc().unwrap().x);
+    let stiff = ContouringBandwidth::tune(&described.dc().unwrap().x, &process, TICK_S, 2.0).unwrap();
+    described.dc_mut().unwrap().control.contouring.bandwidth_hz = stiff.bandwidth_hz;
+    described.dc_mut().unwrap().control.contouring.observer_hz = stiff.observer_hz;
     println!("{:.1} Hz, gain margin {:.2}", stiff.bandwidth_hz, stiff.margins.gain_margin);
     let run = |share: f64| {
         let mut plant = described;
-        for axis in [&mut plant.x, &mut plant.y] {
+        let dc = plant.dc_mut().unwrap();
+        for axis in [&mut dc.x, &mut dc.y] {
             axis.motor.supply_v *= share * stiff.margins.gain_margin;
         }
         let target = StepPoint::new(32_000, 11_520); // 50 mm, 18 mm
@@ -422,10 +424,11 @@ fn suggested_contouring_draws_as_the_default_does() {
     const EVERY_LINE_MM: f64 = 0.005;
     for max_sensitivity in [1.4, 1.6, 1.8] {
         let mut machine = MachineConfig::default();
-        let process = IntegratingProcess::of(&machine.x);
-        let found = ContouringBandwidth::tune(&machine.x, &process, TICK_S, max_sensitivity).unwrap();
-        machine.control.contouring.bandwidth_hz = found.bandwidth_hz;
-        machine.control.contouring.observer_hz = found.observer_hz;
+        let process = IntegratingProcess::of(&machine.dc().unwrap().x);
+        let found =
+            ContouringBandwidth::tune(&machine.dc().unwrap().x, &process, TICK_S, max_sensitivity).unwrap();
+        machine.dc_mut().unwrap().control.contouring.bandwidth_hz = found.bandwidth_hz;
+        machine.dc_mut().unwrap().control.contouring.observer_hz = found.observer_hz;
         let mut worst = 0.0_f64;
         for target in [(2400, 0), (1500, 1500), (300, 2300), (-2000, 900)] {
             let target = StepPoint::new(target.0, target.1);
@@ -460,7 +463,8 @@ fn eight_lines(described: &MachineConfig, plant: &MachineConfig) -> (usize, f64)
 fn contouring_draws_worse_below_the_sensitivity_that_is_the_default() {
     let off = |share: f64| {
         let mut plant = MachineConfig::default();
-        for (axis, sign) in [(&mut plant.x, share), (&mut plant.y, -share)] {
+        let dc = plant.dc_mut().unwrap();
+        for (axis, sign) in [(&mut dc.x, share), (&mut dc.y, -share)] {
             axis.load.coulomb_n_m *= 1.0 + 2.0 * sign;
             axis.load.static_n_m *= 1.0 + 2.0 * sign;
             axis.motor.inertia_kg_m2 *= 1.0 + sign;
@@ -474,10 +478,11 @@ fn contouring_draws_worse_below_the_sensitivity_that_is_the_default() {
     println!("|---|---|---|---|---|---|");
     let rows = [1.4, 1.55, 1.7, 2.0, 2.5].map(|max_sensitivity| {
         let mut described = MachineConfig::default();
-        let process = IntegratingProcess::of(&described.x);
-        let found = ContouringBandwidth::tune(&described.x, &process, TICK_S, max_sensitivity).unwrap();
-        described.control.contouring.bandwidth_hz = found.bandwidth_hz;
-        described.control.contouring.observer_hz = found.observer_hz;
+        let process = IntegratingProcess::of(&described.dc().unwrap().x);
+        let found =
+            ContouringBandwidth::tune(&described.dc().unwrap().x, &process, TICK_S, max_sensitivity).unwrap();
+        described.dc_mut().unwrap().control.contouring.bandwidth_hz = found.bandwidth_hz;
+        described.dc_mut().unwrap().control.contouring.observer_hz = found.observer_hz;
         let (_, same) = eight_lines(&described, &as_described);
         let (_, ten) = eight_lines(&described, &off_10);
         let (ended, thirty) = eight_lines(&described, &off_30);
@@ -502,14 +507,15 @@ fn the_published_program_is_not_helped_by_gains_for_a_loop_at_a_fixed_rate() {
     let mut machine = closed_loop::machine(ControllerChoice::Published);
     let (ended, rms) = eight_lines(&machine, &machine);
     println!("published gains: {ended} of 8 lines end, rms {rms:.4} mm");
-    let tuned = Simc::default().tune(&IntegratingProcess::of(&machine.x), TICK_S).unwrap();
+    let tuned = Simc::default().tune(&IntegratingProcess::of(&machine.dc().unwrap().x), TICK_S).unwrap();
     #[expect(clippy::cast_possible_truncation, reason = "f32 loop")]
     let SumPid { kp, ki, kd } = tuned.pid.sum_form(TICK_S as f32, 255.0);
-    machine.control.published = PublishedConfig { kp, ki, kd_x: kd, kd_y: kd, ..machine.control.published };
+    machine.dc_mut().unwrap().control.published =
+        PublishedConfig { kp, ki, kd_x: kd, kd_y: kd, ..machine.dc().unwrap().control.published };
     let (tuned_ended, tuned_rms) = eight_lines(&machine, &machine);
     println!("tuned for 2500 Hz: {tuned_ended} of 8 lines end, rms {tuned_rms:.4} mm");
-    machine.control.published =
-        PublishedConfig { ki: 0.0, kd_x: 0.0, kd_y: 0.0, ..machine.control.published };
+    machine.dc_mut().unwrap().control.published =
+        PublishedConfig { ki: 0.0, kd_x: 0.0, kd_y: 0.0, ..machine.dc().unwrap().control.published };
     let (alone_ended, alone_rms) = eight_lines(&machine, &machine);
     println!("its kp alone: {alone_ended} of 8 lines end, rms {alone_rms:.4} mm");
     assert!(ended == 8 && tuned_rms > rms && alone_rms > rms);

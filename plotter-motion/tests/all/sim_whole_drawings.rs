@@ -59,8 +59,8 @@ fn misdescribed(machine: &Machine, share: f64, seed: u64) -> Machine {
         axis.load.static_n_m *= friction;
         axis.transmission.rail_friction_n *= friction;
     };
-    wrong(&mut config.x);
-    wrong(&mut config.y);
+    wrong(&mut config.dc_mut().unwrap().x);
+    wrong(&mut config.dc_mut().unwrap().y);
     Machine::new(config).unwrap()
 }
 
@@ -168,7 +168,10 @@ impl Bench {
     fn machine(&self) -> Machine {
         let mut config = *machine(self.name).config();
         if let Drive::OnEnablePin(hz) = self.drive {
-            (config.x.motor.enable_pwm_hz, config.y.motor.enable_pwm_hz) = (hz, hz);
+            (
+                config.dc_mut().unwrap().x.motor.enable_pwm_hz,
+                config.dc_mut().unwrap().y.motor.enable_pwm_hz,
+            ) = (hz, hz);
         }
         Machine::new(config).unwrap()
     }
@@ -182,7 +185,9 @@ impl Bench {
         let machine = self.machine();
         let late_loop = match self.drive {
             Drive::Late => LateLoop {
-                jitter: Duration::from_secs_f64(0.5 / machine.config().control.contouring.loop_hz),
+                jitter: Duration::from_secs_f64(
+                    0.5 / machine.config().dc().unwrap().control.contouring.loop_hz,
+                ),
                 late: Duration::from_millis(1),
                 one_in: 500,
                 seed,

@@ -15,6 +15,7 @@ use crate::log::{self, Event};
 use crate::resume::DrawingMark;
 use crate::serial::find;
 use clap::ValueEnum;
+use plotter_motion::config::{DcConfig, SteppersConfig};
 use plotter_motion::config::{MachineKind, PenLift};
 use plotter_motion::gcode::{PenControl, WriteOptions};
 use plotter_motion::kinematics::{BeltSigns, Cartesian, CoreXy, Kinematics, MotorScale};
@@ -127,7 +128,7 @@ fn of_ebb<K: Kinematics + Clone + Send + 'static>(
     ops: Ops,
     left: Option<(u64, u64)>,
 ) -> Result<Box<dyn MachineHost + Send>, String> {
-    let pen_settle = Duration::from_secs_f64(machine.config().pen.settle_ms / 1e3);
+    let pen_settle = Duration::from_secs_f64(SteppersConfig::of(machine).pen.settle_ms / 1e3);
     let settings = EbbHostSettings {
         planner: PlannerSettings::of(machine),
         motion: EbbMotionSettings { pen_settle, ..EbbMotionSettings::default() },
@@ -149,14 +150,15 @@ fn host_of(
     ops: Ops,
     left: Option<(u64, u64)>,
 ) -> Result<Box<dyn MachineHost + Send>, String> {
-    let config = machine.config();
-    let settle = Duration::from_secs_f64(config.pen.settle_ms / 1e3);
-    let height = PenControl::Height { up_mm: config.pen.down_z_mm + LIFT_MM, down_mm: config.pen.down_z_mm };
-    let is_height = config.pen.lifted_by == PenLift::Height;
-    let usual = WriteOptions { settle, feed_mm_s: config.planner.speed_mm_s, ..WriteOptions::default() };
+    let steppers = SteppersConfig::of(machine);
+    let settle = Duration::from_secs_f64(steppers.pen.settle_ms / 1e3);
+    let height =
+        PenControl::Height { up_mm: steppers.pen.down_z_mm + LIFT_MM, down_mm: steppers.pen.down_z_mm };
+    let is_height = steppers.pen.lifted_by == PenLift::Height;
+    let usual = WriteOptions { settle, feed_mm_s: steppers.planner.speed_mm_s, ..WriteOptions::default() };
     // (once a run, and for as long as it takes)
     let words = |head: &str, degrees: f64| &*format!("{head}{degrees:.0}").leak();
-    let (up_deg, down_deg) = (config.pen.up_deg, config.pen.down_deg);
+    let (up_deg, down_deg) = (steppers.pen.up_deg, steppers.pen.down_deg);
     Ok(match tongue {
         Tongue::MDraw => of_lines(MDraw::new(words("M1 ", up_deg), words("M1 ", down_deg)), ops, left),
         Tongue::Marlin => {
@@ -168,13 +170,13 @@ fn host_of(
         }
         Tongue::Hpgl => of_lines(Hpgl::new().with_flow(flow), ops, left),
         Tongue::Ebb => {
-            let steps_per_mm = config.x.stepper.steps_per_mm;
+            let steps_per_mm = steppers.x.steps_per_mm;
             if is_mixed {
                 let belt = CoreXy::new(BeltSigns::TrackingEquations, steps_per_mm);
                 of_ebb(belt.map_err(|error| error.to_string())?, machine, ops, left)?
             } else {
                 let scale = |steps_per_mm| MotorScale { steps_per_mm, ..MotorScale::default() };
-                let axes = Cartesian::new(scale(steps_per_mm), scale(config.y.stepper.steps_per_mm));
+                let axes = Cartesian::new(scale(steps_per_mm), scale(steppers.y.steps_per_mm));
                 of_ebb(axes.map_err(|error| error.to_string())?, machine, ops, left)?
             }
         }
@@ -254,6 +256,7 @@ impl Live {
     /// Does it with such a machine.
     pub(crate) fn run_lines(self, machine: &Machine, out: &mut impl Write) -> Done {
         let config = machine.config();
+        let dc = DcConfig::of(machine);
         let is_mixed = self.protocol != Protocol::Eggbot;
         let drawing = self.drawing.as_deref().map(DrawingFile::open).transpose()?;
         let plotter = PlotterSettings::from_header(&lines_header(machine, "grbl"))
@@ -291,7 +294,7 @@ impl Live {
             Some(log) => Recording::Machine(log),
             None => Recording::Line(self.lines_writer(machine, tongue, known.as_ref(), "host")?),
         };
-        let counts_per_mm = config.x.counts_per_mm;
+        let counts_per_mm = dc.x.counts_per_mm;
         let ops: Ops = match &drawing {
             Some(drawing) => Box::new(drawing.ops(counts_per_mm)?.filter_map(Result::ok)),
             None => Box::new(core::iter::empty()),
@@ -409,10 +412,11 @@ impl Live {
     ) -> Result<Known, String> {
         let path = self.drawing.as_deref().unwrap_or_else(|| std::path::Path::new("-")).display();
         let config = machine.config();
+        let dc = DcConfig::of(machine);
         let mut table = Timetable::new(machine).map_err(|error| error.to_string())?;
         let (mut mark, mut errors, mut first) = (DrawingMark::default(), 0_u64, Vec::new());
         let (mut at, mut pen) = (Point::ORIGIN, 1);
-        for item in drawing.ops(config.x.counts_per_mm)? {
+        for item in drawing.ops(dc.x.counts_per_mm)? {
             let op = match item {
                 Ok(op) => op,
                 Err(error) => {

@@ -12,6 +12,7 @@ use crate::live::{
 use crate::log::{self, FileWriter, LogFile};
 use crate::serial::find;
 use crate::{PlotterSettings, ResumePoint, resume::DrawingMark};
+use plotter_motion::config::{DcConfig, OneBeltConfig};
 use plotter_motion::protocol::HostSettings;
 use plotter_motion::toolpath::from_mm;
 use plotter_motion::{Machine, PenMove, Point, StepPoint, config::MachineKind};
@@ -35,6 +36,7 @@ impl Live {
     /// Does it with a machine of targets.
     pub(crate) fn run_targets(self, machine: &Machine, out: &mut impl Write) -> Done {
         let config = machine.config();
+        let dc = DcConfig::of(machine);
         let is_belt = machine.kind() == MachineKind::Belt;
         let link = self.link_with(is_belt)?;
         let plotter = targets_plotter(machine);
@@ -60,7 +62,7 @@ impl Live {
             pwm_steps: if is_belt {
                 [SimulatedMachine::BELT_PWM_STEPS; 2]
             } else {
-                [config.x.motor.pwm_steps, config.y.motor.pwm_steps]
+                [dc.x.motor.pwm_steps, dc.y.motor.pwm_steps]
             },
             host: HostSettings {
                 tolerance_counts: plotter.reached_tolerance_counts,
@@ -223,7 +225,7 @@ impl Live {
         let header = match (machine.kind(), &self.port) {
             (MachineKind::Belt, None) => belt_header(machine),
             (MachineKind::Belt, Some(_)) => {
-                let start = &machine.config().belt;
+                let start = &OneBeltConfig::of(machine).belt;
                 header_of(machine, "digits", None)
                     .with_decimal("begins_x_mm", start.start_x_mm)
                     .with_decimal("begins_y_mm", start.start_y_mm)
@@ -249,10 +251,11 @@ impl Live {
 
     fn describe(&self, page: &mut LivePage, machine: &Machine, port: &str) {
         let config = machine.config();
+        let dc = DcConfig::of(machine);
         page.is_simulated = self.port.is_none();
         page.has_hand = true;
         page.ramps = machine.kind() == MachineKind::Belt;
-        page.supply_v = Some([config.x.motor.supply_v, config.y.motor.supply_v]);
+        page.supply_v = Some([dc.x.motor.supply_v, dc.y.motor.supply_v]);
         page.pens.clone_from(&self.pens);
         if page.is_simulated {
             page.about = format!(
@@ -272,7 +275,7 @@ impl Live {
         page.facts = vec![
             fact("port", port.to_owned()),
             fact("baud", config.serial.baud.to_string()),
-            fact("resolution", format!("{} × {} counts/mm", config.x.counts_per_mm, config.y.counts_per_mm)),
+            fact("resolution", format!("{} × {} counts/mm", dc.x.counts_per_mm, dc.y.counts_per_mm)),
             fact("area", format!("{} × {} mm", config.area.width_mm, config.area.height_mm)),
             fact("origin P1", String::from("0, 0 mm (lower left)")),
             fact("recording", self.output.display().to_string()),
@@ -324,10 +327,10 @@ pub(super) fn targets_by_hand(
 
 /// Where the sheet lies under the counts of a machine of targets, and where it stands when it is switched on.
 fn targets_plotter(machine: &Machine) -> PlotterSettings {
-    let config = machine.config();
+    let OneBeltConfig { dc, belt, .. } = OneBeltConfig::of(machine);
     let scale = PlotterSettings {
-        x_mm_per_pulse: 1.0 / config.x.counts_per_mm,
-        y_mm_per_pulse: 1.0 / config.y.counts_per_mm,
+        x_mm_per_pulse: 1.0 / dc.x.counts_per_mm,
+        y_mm_per_pulse: 1.0 / dc.y.counts_per_mm,
         ..PlotterSettings::default()
     };
     if machine.kind() != MachineKind::Belt {
@@ -340,7 +343,7 @@ fn targets_plotter(machine: &Machine) -> PlotterSettings {
     )]
     let tolerance = belt_tolerance(machine) as u32;
     PlotterSettings {
-        begins_at: Some(Point::new(config.belt.start_x_mm, config.belt.start_y_mm)),
+        begins_at: Some(Point::new(belt.start_x_mm, belt.start_y_mm)),
         reached_tolerance_counts: tolerance,
         ..scale
     }
@@ -349,9 +352,10 @@ fn targets_plotter(machine: &Machine) -> PlotterSettings {
 /// The greatest counts that the machine reaches.
 fn most_counts(machine: &Machine) -> StepPoint {
     let config = machine.config();
+    let dc = DcConfig::of(machine);
     StepPoint::new(
-        from_mm(config.area.width_mm, config.x.counts_per_mm),
-        from_mm(config.area.height_mm, config.y.counts_per_mm),
+        from_mm(config.area.width_mm, dc.x.counts_per_mm),
+        from_mm(config.area.height_mm, dc.y.counts_per_mm),
     )
 }
 
@@ -360,7 +364,7 @@ fn steps(
     drawing: &DrawingFile,
     machine: &Machine,
 ) -> Result<Box<dyn Iterator<Item = DrawingStep> + Send>, String> {
-    let ops = drawing.ops(machine.config().x.counts_per_mm)?.filter_map(Result::ok);
+    let ops = drawing.ops(DcConfig::of(machine).x.counts_per_mm)?.filter_map(Result::ok);
     Ok(Box::new(drawing_steps(machine, ops).filter_map(Result::ok)))
 }
 
@@ -392,7 +396,7 @@ impl Known {
                 first.push(error);
             }
         };
-        let ops = drawing.ops(machine.config().x.counts_per_mm)?;
+        let ops = drawing.ops(DcConfig::of(machine).x.counts_per_mm)?;
         let ops = ops.filter_map(|item| item.map_err(note).ok());
         for step in drawing_steps(machine, ops) {
             match step {
@@ -435,7 +439,7 @@ struct TargetsTime {
 
 impl TargetsTime {
     fn push(&mut self, machine: &Machine, length_mm: f64) {
-        let plan = &machine.config().control.contouring;
+        let plan = &DcConfig::of(machine).control.contouring;
         let (speed, accel) = (plan.feed_mm_s, plan.accel_mm_s2);
         let ramps_mm = speed * speed / accel;
         self.time_s += if length_mm >= ramps_mm {

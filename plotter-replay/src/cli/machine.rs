@@ -4,7 +4,7 @@ use super::commands::{MOST_MACHINE_BYTES, read_file};
 #[cfg(feature = "live")]
 use crate::log::Header;
 #[cfg(feature = "live")]
-use plotter_motion::config::{ControllerChoice, MachineKind};
+use plotter_motion::config::{ControllerChoice, DcConfig, MachineKind, OneBeltConfig, SteppersConfig};
 #[cfg(feature = "live")]
 use plotter_motion::kinematics::Backlash;
 use plotter_motion::{Machine, MachineConfig};
@@ -29,7 +29,8 @@ pub(crate) fn read_machine(path: Option<&Path>) -> Result<Machine, String> {
 #[cfg(feature = "live")]
 pub(crate) fn header_of(machine: &Machine, protocol: &str, boot: Option<u32>) -> Header {
     let config = machine.config();
-    let controller = match config.control.controller {
+    let dc = DcConfig::of(machine);
+    let controller = match dc.control.controller {
         ControllerChoice::Published => "published",
         _ => "contouring",
     };
@@ -38,8 +39,8 @@ pub(crate) fn header_of(machine: &Machine, protocol: &str, boot: Option<u32>) ->
         .with_text("protocol", protocol)
         .with_text("machine", config.name.as_str())
         .with_text("controller", controller)
-        .with_decimal("x_mm_per_pulse", 1.0 / config.x.counts_per_mm)
-        .with_decimal("y_mm_per_pulse", 1.0 / config.y.counts_per_mm);
+        .with_decimal("x_mm_per_pulse", 1.0 / dc.x.counts_per_mm)
+        .with_decimal("y_mm_per_pulse", 1.0 / dc.y.counts_per_mm);
     match boot {
         Some(boot) => header.with_number("boot", boot.into()),
         None => header,
@@ -60,6 +61,7 @@ fn with_play(header: Header, machine: &Machine) -> Header {
 #[cfg(feature = "live")]
 pub(crate) fn lines_header(machine: &Machine, protocol: &str) -> Header {
     let config = machine.config();
+    let steppers = SteppersConfig::of(machine);
     let header = Header::new()
         .with_number("baud", config.serial.baud.into())
         .with_text("protocol", protocol)
@@ -68,8 +70,8 @@ pub(crate) fn lines_header(machine: &Machine, protocol: &str) -> Header {
     let is_preset = *config == MachineConfig::stepper_plotter();
     let header = if is_preset { header.with_text("controller", "stepper-plotter") } else { header };
     let header = header
-        .with_decimal("x_mm_per_pulse", 1.0 / config.x.stepper.steps_per_mm)
-        .with_decimal("y_mm_per_pulse", 1.0 / config.y.stepper.steps_per_mm);
+        .with_decimal("x_mm_per_pulse", 1.0 / steppers.x.steps_per_mm)
+        .with_decimal("y_mm_per_pulse", 1.0 / steppers.y.steps_per_mm);
     with_play(header, machine)
 }
 
@@ -93,12 +95,13 @@ pub(crate) fn simulated_header(machine: &Machine, spoken: crate::live::Spoken) -
 #[cfg(all(feature = "live", unix))]
 fn ebb_header(machine: &Machine, is_mixed: bool) -> Header {
     let config = machine.config();
+    let steppers = SteppersConfig::of(machine);
     let header = Header::new()
         .with_number("baud", config.serial.baud.into())
         .with_text("protocol", "ebb")
         .with_text("machine", config.name.as_str())
-        .with_decimal("x_mm_per_pulse", 1.0 / config.x.stepper.steps_per_mm)
-        .with_decimal("y_mm_per_pulse", 1.0 / config.y.stepper.steps_per_mm);
+        .with_decimal("x_mm_per_pulse", 1.0 / steppers.x.steps_per_mm)
+        .with_decimal("y_mm_per_pulse", 1.0 / steppers.y.steps_per_mm);
     if is_mixed { header.with_text("belt_signs", "tracking-equations") } else { header }
 }
 
@@ -106,11 +109,9 @@ fn ebb_header(machine: &Machine, is_mixed: bool) -> Header {
 /// allowed error along both axes, one motor may be off by both.
 #[cfg(feature = "live")]
 pub(crate) fn belt_tolerance(machine: &Machine) -> f64 {
-    let config = machine.config();
-    match config.control.controller {
-        ControllerChoice::Published => {
-            (2.0 * config.point_to_point.allowed_error_mm * config.x.counts_per_mm).ceil()
-        }
+    let OneBeltConfig { dc, point_to_point, .. } = OneBeltConfig::of(machine);
+    match dc.control.controller {
+        ControllerChoice::Published => (2.0 * point_to_point.allowed_error_mm * dc.x.counts_per_mm).ceil(),
         _ => 1.0,
     }
 }
@@ -128,7 +129,9 @@ pub(crate) fn belt_header(machine: &Machine) -> Header {
         BeltSigns::TrackingEquations => "tracking-equations",
     };
     let mut preset = MachineConfig::marking_board();
-    preset.control.controller = ControllerChoice::Published;
+    if let Some(dc) = preset.dc_mut() {
+        dc.control.controller = ControllerChoice::Published;
+    }
     let header = Header::new()
         .with_number("baud", config.serial.baud.into())
         .with_text("protocol", "counts")

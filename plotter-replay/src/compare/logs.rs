@@ -9,11 +9,26 @@ use std::collections::VecDeque;
 
 /// How two logs are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct CompareSettings {
     /// How far times may be off.
     pub tolerance: Duration,
     /// Records that the first difference shows before and after the place.
     pub context: usize,
+}
+
+impl CompareSettings {
+    /// The same with another [`CompareSettings::tolerance`].
+    #[must_use]
+    pub const fn with_tolerance(self, tolerance: Duration) -> Self {
+        Self { tolerance, ..self }
+    }
+
+    /// The same with another [`CompareSettings::context`].
+    #[must_use]
+    pub const fn with_context(self, context: usize) -> Self {
+        Self { context, ..self }
+    }
 }
 
 impl Default for CompareSettings {

@@ -16,11 +16,26 @@ use std::io::{Seek, Write};
 
 /// How a log becomes MCAP.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct McapSettings {
     /// Window of time whose records become one message per topic.
     pub batch: Duration,
     /// Time of the log's beginning, ns since 1970: Foxglove shows times of day.
     pub began_ns: u64,
+}
+
+impl McapSettings {
+    /// The same with another [`McapSettings::batch`].
+    #[must_use]
+    pub const fn with_batch(self, batch: Duration) -> Self {
+        Self { batch, ..self }
+    }
+
+    /// The same with another [`McapSettings::began_ns`].
+    #[must_use]
+    pub const fn with_began_ns(self, began_ns: u64) -> Self {
+        Self { began_ns, ..self }
+    }
 }
 
 impl Default for McapSettings {

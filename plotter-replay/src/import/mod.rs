@@ -67,6 +67,7 @@ pub enum Side {
 
 /// Settings of an import, beside its files.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ImportSettings {
     /// Bits a second on the line.
     pub baud: u32,
@@ -77,6 +78,32 @@ pub struct ImportSettings {
     pub host: Option<String>,
     /// Name of the controller in the recording.
     pub controller: Option<String>,
+}
+
+impl ImportSettings {
+    /// The same with another [`ImportSettings::baud`].
+    #[must_use]
+    pub fn with_baud(self, baud: u32) -> Self {
+        Self { baud, ..self }
+    }
+
+    /// The same with another [`ImportSettings::sample_rate_hz`].
+    #[must_use]
+    pub fn with_sample_rate_hz(self, sample_rate_hz: Option<f64>) -> Self {
+        Self { sample_rate_hz, ..self }
+    }
+
+    /// The same with another [`ImportSettings::host`].
+    #[must_use]
+    pub fn with_host(self, host: Option<String>) -> Self {
+        Self { host, ..self }
+    }
+
+    /// The same with another [`ImportSettings::controller`].
+    #[must_use]
+    pub fn with_controller(self, controller: Option<String>) -> Self {
+        Self { controller, ..self }
+    }
 }
 
 impl Default for ImportSettings {

@@ -8,6 +8,7 @@ use plotter_motion::protocol::{HostSettings, Resume};
 
 /// What is spoken with the machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum LinkChoice {
     /// Frames, if the machine knows them, else digits. It is called when the drawing begins, at the origin.
     #[default]
@@ -20,6 +21,7 @@ pub enum LinkChoice {
 
 /// How a session goes.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct SessionSettings {
     /// Scale and origin of the machine.
     pub plotter: PlotterSettings,
@@ -51,6 +53,92 @@ pub struct SessionSettings {
     pub ramps: bool,
     /// Names of pens by their numbers, such as their colours.
     pub pens: Vec<(u8, String)>,
+}
+
+impl SessionSettings {
+    /// The same with another [`SessionSettings::plotter`].
+    #[must_use]
+    pub fn with_plotter(self, plotter: PlotterSettings) -> Self {
+        Self { plotter, ..self }
+    }
+
+    /// The same with another [`SessionSettings::byte_gap`].
+    #[must_use]
+    pub fn with_byte_gap(self, byte_gap: Duration) -> Self {
+        Self { byte_gap, ..self }
+    }
+
+    /// The same with another [`SessionSettings::host`].
+    #[must_use]
+    pub fn with_host(self, host: HostSettings) -> Self {
+        Self { host, ..self }
+    }
+
+    /// The same with another [`SessionSettings::plan`].
+    #[must_use]
+    pub fn with_plan(self, plan: Option<Plan>) -> Self {
+        Self { plan, ..self }
+    }
+
+    /// The same with another [`SessionSettings::pwm_steps`].
+    #[must_use]
+    pub fn with_pwm_steps(self, pwm_steps: [u32; 2]) -> Self {
+        Self { pwm_steps, ..self }
+    }
+
+    /// The same with another [`SessionSettings::link`].
+    #[must_use]
+    pub fn with_link(self, link: LinkChoice) -> Self {
+        Self { link, ..self }
+    }
+
+    /// The same with another [`SessionSettings::nonce`].
+    #[must_use]
+    pub fn with_nonce(self, nonce: u16) -> Self {
+        Self { nonce, ..self }
+    }
+
+    /// The same with another [`SessionSettings::baud`].
+    #[must_use]
+    pub fn with_baud(self, baud: u32) -> Self {
+        Self { baud, ..self }
+    }
+
+    /// The same with another [`SessionSettings::resume`].
+    #[must_use]
+    pub fn with_resume(self, resume: Option<Resume>) -> Self {
+        Self { resume, ..self }
+    }
+
+    /// The same with another [`SessionSettings::most`].
+    #[must_use]
+    pub fn with_most(self, most: Option<StepPoint>) -> Self {
+        Self { most, ..self }
+    }
+
+    /// The same with another [`SessionSettings::bounds`].
+    #[must_use]
+    pub fn with_bounds(self, bounds: Option<(StepPoint, StepPoint)>) -> Self {
+        Self { bounds, ..self }
+    }
+
+    /// The same with another [`SessionSettings::stands_at`].
+    #[must_use]
+    pub fn with_stands_at(self, stands_at: StepPoint) -> Self {
+        Self { stands_at, ..self }
+    }
+
+    /// The same with another [`SessionSettings::ramps`].
+    #[must_use]
+    pub fn with_ramps(self, ramps: bool) -> Self {
+        Self { ramps, ..self }
+    }
+
+    /// The same with another [`SessionSettings::pens`].
+    #[must_use]
+    pub fn with_pens(self, pens: Vec<(u8, String)>) -> Self {
+        Self { pens, ..self }
+    }
 }
 
 impl Default for SessionSettings {

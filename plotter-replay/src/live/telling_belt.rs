@@ -4,6 +4,7 @@ use super::simulated::Steps;
 use crate::player::AnsweringBoard;
 use crate::simulation::{Act, ActError, Belt, Seen, Simulation, Take, belt};
 use core::time::Duration;
+use plotter_motion::config::DcConfig;
 use plotter_motion::protocol::digits::Reply;
 use plotter_motion::toolpath::from_mm;
 use plotter_motion::{Axis, Direction, Machine, StepPoint};
@@ -19,7 +20,7 @@ pub(super) struct TellingBelt {
 
 impl TellingBelt {
     pub(super) fn new(machine: &Machine) -> Self {
-        let counts_per_mm = machine.config().x.counts_per_mm;
+        let counts_per_mm = DcConfig::of(machine).x.counts_per_mm;
         let mut board =
             Self { board: belt(machine), counts_per_mm, told: StepPoint::default(), said: Vec::new() };
         board.told = board.counted();

@@ -187,14 +187,17 @@ fn machine_of(header: &Header, machine: Option<&Machine>) -> Result<Machine, Con
 
 fn preset(said: Option<&str>) -> Result<Machine, ControllerError> {
     let mut config = MachineConfig::default();
-    match said {
-        None => {}
-        Some("published") => config.control.controller = ControllerChoice::Published,
-        Some("contouring") => config.control.controller = ControllerChoice::Contouring,
-        Some("stepper-plotter") => config = MachineConfig::stepper_plotter(),
+    let controller = match said {
+        None => None,
+        Some("published") => Some(ControllerChoice::Published),
+        Some("contouring") => Some(ControllerChoice::Contouring),
+        Some("stepper-plotter") => {
+            config = MachineConfig::stepper_plotter();
+            None
+        }
         Some("marking-board") => {
             config = MachineConfig::marking_board();
-            config.control.controller = ControllerChoice::Published;
+            Some(ControllerChoice::Published)
         }
         Some(other) => {
             return Err(ControllerError {
@@ -204,6 +207,9 @@ fn preset(said: Option<&str>) -> Result<Machine, ControllerError> {
                 ),
             });
         }
+    };
+    if let (Some(dc), Some(controller)) = (config.dc_mut(), controller) {
+        dc.control.controller = controller;
     }
     Machine::new(config).map_err(error)
 }

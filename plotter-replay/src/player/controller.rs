@@ -32,7 +32,7 @@ use plotter_motion::{Axis, Direction, Pen, StepPair, StepPoint};
 /// let at = |us, event| Record { time: Duration::from_micros(us), event };
 /// // An answer takes ten bits: 1 ms at 10000 baud.
 /// let recorded = [at(0, Event::Host(vec![b'a'])), at(1000, Event::Controller(vec![b'b']))];
-/// let player = Player::new(PlayerSettings { baud: 10_000, ..PlayerSettings::default() });
+/// let player = Player::new(PlayerSettings::default().with_baud(10_000));
 /// assert!(player.check(recorded, Next::default()).is_equal());
 /// ```
 pub trait Controller {

@@ -3,6 +3,7 @@
 use super::Controller;
 use crate::log::SwitchName;
 use core::time::Duration;
+use plotter_motion::config::DcConfig;
 use plotter_motion::firmware::Gantry;
 use plotter_motion::{Axis, Direction, LimitSwitches, Machine, SafetyGate};
 
@@ -71,8 +72,8 @@ pub(super) const fn gate() -> SafetyGate {
 
 /// Steps of the PWM timers of both motors.
 pub(super) fn pwm_steps(machine: &Machine) -> [u16; 2] {
-    let config = machine.config();
-    let steps = [config.x.motor.pwm_steps, config.y.motor.pwm_steps];
+    let dc = DcConfig::of(machine);
+    let steps = [dc.x.motor.pwm_steps, dc.y.motor.pwm_steps];
     steps.map(|steps| u16::try_from(steps).unwrap_or(u16::MAX))
 }
 

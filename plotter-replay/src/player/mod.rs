@@ -59,6 +59,7 @@ const CONTEXT: usize = 10;
 
 /// How a recording is re-run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct PlayerSettings {
     /// Bits a second on the line.
     pub baud: u32,
@@ -69,6 +70,32 @@ pub struct PlayerSettings {
     pub edges: EdgeSource,
     /// Whether a re-run tells each change of a duty cycle, too.
     pub tells_duties: bool,
+}
+
+impl PlayerSettings {
+    /// The same with another [`PlayerSettings::baud`].
+    #[must_use]
+    pub const fn with_baud(self, baud: u32) -> Self {
+        Self { baud, ..self }
+    }
+
+    /// The same with another [`PlayerSettings::tolerance`].
+    #[must_use]
+    pub const fn with_tolerance(self, tolerance: Duration) -> Self {
+        Self { tolerance, ..self }
+    }
+
+    /// The same with another [`PlayerSettings::edges`].
+    #[must_use]
+    pub const fn with_edges(self, edges: EdgeSource) -> Self {
+        Self { edges, ..self }
+    }
+
+    /// The same with another [`PlayerSettings::tells_duties`].
+    #[must_use]
+    pub const fn with_tells_duties(self, tells_duties: bool) -> Self {
+        Self { tells_duties, ..self }
+    }
 }
 
 impl Default for PlayerSettings {

@@ -4,6 +4,7 @@ use core::time::Duration;
 
 /// How a recording is played.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PaceSettings {
     /// How many times as fast as it was; `None` is without waiting at all. Finite and above 0.
     pub speed: Option<f64>,
@@ -13,6 +14,32 @@ pub struct PaceSettings {
     pub to: Duration,
     /// Silences longer than this last only so long.
     pub longest_gap: Duration,
+}
+
+impl PaceSettings {
+    /// The same with another [`PaceSettings::speed`].
+    #[must_use]
+    pub const fn with_speed(self, speed: Option<f64>) -> Self {
+        Self { speed, ..self }
+    }
+
+    /// The same with another [`PaceSettings::from`].
+    #[must_use]
+    pub const fn with_from(self, from: Duration) -> Self {
+        Self { from, ..self }
+    }
+
+    /// The same with another [`PaceSettings::to`].
+    #[must_use]
+    pub const fn with_to(self, to: Duration) -> Self {
+        Self { to, ..self }
+    }
+
+    /// The same with another [`PaceSettings::longest_gap`].
+    #[must_use]
+    pub const fn with_longest_gap(self, longest_gap: Duration) -> Self {
+        Self { longest_gap, ..self }
+    }
 }
 
 impl Default for PaceSettings {
@@ -28,7 +55,7 @@ impl Default for PaceSettings {
 /// # use plotter_replay::player::{Pace, PaceSettings};
 /// # use core::time::Duration;
 /// let ms = Duration::from_millis;
-/// let mut pace = Pace::new(PaceSettings { speed: Some(2.0), longest_gap: ms(100), ..PaceSettings::default() });
+/// let mut pace = Pace::new(PaceSettings::default().with_speed(Some(2.0)).with_longest_gap(ms(100)));
 /// assert_eq!(pace.wait(ms(50), ms(0)), ms(25)); // twice as fast
 /// assert_eq!(pace.wait(ms(60), ms(29)), ms(1)); // 4 ms late, so it is waited 1 ms instead of 5
 /// assert_eq!(pace.wait(ms(9_060), ms(30)), ms(50)); // a gap of 9 s lasts 100 ms

@@ -28,6 +28,7 @@ fn whole_micros(time: Duration) -> Duration {
 
 /// Where the edges for a re-run come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum EdgeSource {
     /// The log's `@ edge` records: a re-run is exact.
     #[default]

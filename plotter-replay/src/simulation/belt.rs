@@ -6,6 +6,7 @@ use super::{Act, ActError, Seen, Simulation, Told, World};
 use crate::log::Event;
 use crate::player::AnsweringBoard;
 use core::time::Duration;
+use plotter_motion::config::DcConfig;
 use plotter_motion::firmware::MarkingBoardSettings;
 use plotter_motion::kinematics::Kinematics as _;
 use plotter_motion::plant::{MarkingBoardPlant, MarkingBoardPlantSettings};
@@ -17,13 +18,14 @@ const SLICE: Duration = Duration::from_micros(50);
 /// The board of this machine, where it stands when it is switched on.
 pub(crate) fn belt(machine: &Machine) -> Simulation<AnsweringBoard, Belt> {
     let config = machine.config();
+    let dc = DcConfig::of(machine);
     let silence = Duration::from_secs_f64(config.serial.resync_gap_ms / 1e3);
     let plant = MarkingBoardPlantSettings::of(machine);
     let world = Belt {
         plant: MarkingBoardPlant::new(&plant, SLICE.as_secs_f64()),
         settings: MarkingBoardSettings::of(machine),
         pwm_steps: f64::from(AnsweringBoard::PWM_STEPS),
-        mm_per_count: 1.0 / config.x.counts_per_mm,
+        mm_per_count: 1.0 / dc.x.counts_per_mm,
         now: Duration::ZERO,
         by_hand: LimitSwitches::RELEASED,
         told: LimitSwitches::RELEASED,

@@ -4,6 +4,7 @@ use super::{Act, ActError, Seen, Simulation, Told, World};
 use crate::log::{Event, SwitchName};
 use crate::player::{ControllerError, limit};
 use core::time::Duration;
+use plotter_motion::config::SteppersConfig;
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{Activity, Dialect, StepperPlotterSettings};
 use plotter_motion::kinematics::BeltSigns;
@@ -66,11 +67,12 @@ struct Way {
 impl Way {
     fn of(machine: &Machine, axis: Axis) -> Self {
         let config = machine.config();
+        let steppers = SteppersConfig::of(machine);
         let (stepper, size_mm) = match axis {
-            Axis::X => (config.x.stepper, config.area.width_mm),
-            Axis::Y => (config.y.stepper, config.area.height_mm),
+            Axis::X => (steppers.x, config.area.width_mm),
+            Axis::Y => (steppers.y, config.area.height_mm),
         };
-        let homing = config.homing;
+        let homing = steppers.homing;
         // Both ends lie beyond the area, and farther apart than homing relies on.
         let length_mm = (size_mm + 2.0 * homing.pull_off_mm).max(homing.known_travel_mm + homing.pull_off_mm);
         Self {
@@ -156,7 +158,7 @@ pub(super) fn changes(before: LimitSwitches, now: LimitSwitches) -> impl Iterato
 
 impl Steppers {
     pub(super) fn of(machine: &Machine) -> Self {
-        let motor = machine.config().stepper_motor;
+        let motor = SteppersConfig::of(machine).stepper_motor;
         Self {
             plant: StepperPlant::new(motor, motor),
             belt: None,

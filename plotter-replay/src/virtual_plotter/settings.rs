@@ -9,6 +9,7 @@ use plotter_motion::{Point, StepPoint};
 
 /// Scale, origin and limits of a virtual plotter.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PlotterSettings {
     /// Length of a pulse to the right, mm: finite and above 0.
     pub x_mm_per_pulse: f64,
@@ -42,8 +43,89 @@ pub struct PlotterSettings {
     pub max_entries: usize,
 }
 
+impl PlotterSettings {
+    /// The same with another [`PlotterSettings::x_mm_per_pulse`].
+    #[must_use]
+    pub const fn with_x_mm_per_pulse(self, x_mm_per_pulse: f64) -> Self {
+        Self { x_mm_per_pulse, ..self }
+    }
+
+    /// The same with another [`PlotterSettings::y_mm_per_pulse`].
+    #[must_use]
+    pub const fn with_y_mm_per_pulse(self, y_mm_per_pulse: f64) -> Self {
+        Self { y_mm_per_pulse, ..self }
+    }
+
+    /// The same with another [`PlotterSettings::p1`].
+    #[must_use]
+    pub const fn with_p1(self, p1: Point) -> Self {
+        Self { p1, ..self }
+    }
+
+    /// The same with another [`PlotterSettings::belt`].
+    #[must_use]
+    pub const fn with_belt(self, belt: Option<BeltSigns>) -> Self {
+        Self { belt, ..self }
+    }
+
+    /// The same with another [`PlotterSettings::play`].
+    #[must_use]
+    pub const fn with_play(self, play: Backlash) -> Self {
+        Self { play, ..self }
+    }
+
+    /// The same with another [`PlotterSettings::counted_by`].
+    #[must_use]
+    pub const fn with_counted_by(self, counted_by: CountedBy) -> Self {
+        Self { counted_by, ..self }
+    }
+
+    /// The same with another [`PlotterSettings::begins_at`].
+    #[must_use]
+    pub const fn with_begins_at(self, begins_at: Option<Point>) -> Self {
+        Self { begins_at, ..self }
+    }
+
+    /// The same with another [`PlotterSettings::pen`].
+    #[must_use]
+    pub const fn with_pen(self, pen: PenConvention) -> Self {
+        Self { pen, ..self }
+    }
+
+    /// The same with another [`PlotterSettings::resync_gap`].
+    #[must_use]
+    pub const fn with_resync_gap(self, resync_gap: Duration) -> Self {
+        Self { resync_gap, ..self }
+    }
+
+    /// The same with another [`PlotterSettings::stall_after`].
+    #[must_use]
+    pub const fn with_stall_after(self, stall_after: Duration) -> Self {
+        Self { stall_after, ..self }
+    }
+
+    /// The same with another [`PlotterSettings::reached_tolerance_counts`].
+    #[must_use]
+    pub const fn with_reached_tolerance_counts(self, reached_tolerance_counts: u32) -> Self {
+        Self { reached_tolerance_counts, ..self }
+    }
+
+    /// The same with another [`PlotterSettings::max_points`].
+    #[must_use]
+    pub const fn with_max_points(self, max_points: usize) -> Self {
+        Self { max_points, ..self }
+    }
+
+    /// The same with another [`PlotterSettings::max_entries`].
+    #[must_use]
+    pub const fn with_max_entries(self, max_entries: usize) -> Self {
+        Self { max_entries, ..self }
+    }
+}
+
 /// Records of a log that tell the position of the motors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum CountedBy {
     /// The controller's answers on the serial line: the protocol `digits`.
     #[default]
@@ -211,7 +293,7 @@ impl PlotterSettings {
     /// ```
     /// # use plotter_motion::{Point, StepPoint};
     /// # use plotter_replay::PlotterSettings;
-    /// let settings = PlotterSettings { p1: Point::new(10.0, 20.0), ..Default::default() };
+    /// let settings = PlotterSettings::default().with_p1(Point::new(10.0, 20.0));
     /// assert_eq!(settings.to_sheet(StepPoint::new(40, 80)), Point::new(11.0, 22.0));
     /// ```
     #[must_use]

@@ -49,7 +49,8 @@ fn presets() -> Vec<(String, Machine)> {
     presets.retain(|(_, machine)| {
         let config = machine.config();
         // Of what the belts do, a controller and so its log know nothing; worn ones are for the test bed.
-        machine.kind() != MachineKind::Belt && config.x.transmission == TransmissionConfig::default()
+        machine.kind() != MachineKind::Belt
+            && config.dc().is_none_or(|dc| dc.x.transmission == TransmissionConfig::default())
     });
     presets.sort_by(|a, b| a.0.cmp(&b.0));
     presets
@@ -61,7 +62,8 @@ fn sessions(name: &str, machine: &Machine) -> Vec<(String, Header, Machine)> {
         Header::new().with_number("baud", u64::from(machine.config().serial.baud)).with_text("machine", name);
     match machine.kind() {
         MachineKind::Steppers => {
-            let [x, y] = [machine.config().x, machine.config().y].map(|axis| 1.0 / axis.stepper.steps_per_mm);
+            let steppers = machine.config().steppers().unwrap();
+            let [x, y] = [steppers.x, steppers.y].map(|axis| 1.0 / axis.steps_per_mm);
             let mut header = header.with_decimal("x_mm_per_pulse", x).with_decimal("y_mm_per_pulse", y);
             let play = Backlash::of(machine);
             if play != Backlash::default() {
@@ -76,7 +78,7 @@ fn sessions(name: &str, machine: &Machine) -> Vec<(String, Header, Machine)> {
         _ => [("published", ControllerChoice::Published), ("contouring", ControllerChoice::Contouring)]
             .map(|(controller, choice)| {
                 let mut config = *machine.config();
-                config.control.controller = choice;
+                config.dc_mut().unwrap().control.controller = choice;
                 // The published pause of 10 ms after each byte changes nothing but the length.
                 config.serial.byte_gap_ms = 0.5;
                 let header =
@@ -177,8 +179,9 @@ fn assert_is_drawn(path: &Path, machine: &Machine) {
     assert_eq!([targets, reached], [4; 2], "{}", path.display());
     // A place is met to half a step, and a corner may be left by as much as the planner rounds it.
     let config = machine.config();
-    let steps_mm = 2.0 / config.x.stepper.steps_per_mm.min(config.y.stepper.steps_per_mm);
-    let most_mm = steps_mm + config.planner.path_tolerance_mm;
+    let steps_mm =
+        2.0 / config.steppers().unwrap().x.steps_per_mm.min(config.steppers().unwrap().y.steps_per_mm);
+    let most_mm = steps_mm + config.steppers().unwrap().planner.path_tolerance_mm;
     let error = plotter.contour_error(Ways::Drawn);
     assert!(error.max_mm <= most_mm, "{}: {error:?}, at most {most_mm} mm", path.display());
 }
@@ -236,7 +239,7 @@ fn the_marking_board_replays_its_golden_log() {
     let header = Header::new().with_text("machine", "marking-board").with_text("controller", "marking-board");
     if golden::Mode::from_env() == golden::Mode::Renew {
         let mut config = MachineConfig::marking_board();
-        config.control.controller = ControllerChoice::Published;
+        config.dc_mut().unwrap().control.controller = ControllerChoice::Published;
         let machine = Machine::new(config).unwrap();
         let settings = MarkingBoardSettings::of(&machine);
         let mut board = MarkingBoard::new(

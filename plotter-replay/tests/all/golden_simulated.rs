@@ -52,14 +52,19 @@ fn record(machine: &Machine, spoken: Spoken, header: &Header, script: &str, talk
 fn sessions() -> Vec<(&'static str, Machine, Spoken, Header, &'static str, Talk)> {
     let mut small = MachineConfig::stepper_plotter();
     (small.area.width_mm, small.area.height_mm) = (20.0, 10.0);
-    (small.homing.known_travel_mm, small.homing.max_travel_mm) = (0.0, 30.0);
-    (small.homing.fast_rate_hz, small.homing.pull_off_mm) = (4_000.0, 0.1);
-    for axis in [&mut small.x, &mut small.y] {
-        axis.stepper.steps_per_mm = 20.0;
+    (
+        small.steppers_mut().unwrap().homing.known_travel_mm,
+        small.steppers_mut().unwrap().homing.max_travel_mm,
+    ) = (0.0, 30.0);
+    (small.steppers_mut().unwrap().homing.fast_rate_hz, small.steppers_mut().unwrap().homing.pull_off_mm) =
+        (4_000.0, 0.1);
+    let steppers = small.steppers_mut().unwrap();
+    for axis in [&mut steppers.x, &mut steppers.y] {
+        axis.steps_per_mm = 20.0;
     }
     let steppers = Machine::new(small).unwrap();
     let mut config = MachineConfig::marking_board();
-    config.control.controller = plotter_motion::config::ControllerChoice::Published;
+    config.dc_mut().unwrap().control.controller = plotter_motion::config::ControllerChoice::Published;
     let board = Machine::new(config).unwrap();
     let header = |machine: &Machine, protocol: &str, mm_per_pulse: f64| {
         let baud = machine.config().serial.baud;
@@ -144,9 +149,10 @@ fn every_dialect_does_again_what_its_golden_log_has() {
 fn a_machine_that_limits_the_jerk_as_a_vector_does_again_what_its_log_has() {
     let (_, steppers, spoken, header, script, talk) = sessions().swap_remove(1);
     let mut config = *steppers.config();
-    (config.planner.mode, config.planner.s_curve) = (PathChoice::Tolerance, true);
+    (config.steppers_mut().unwrap().planner.mode, config.steppers_mut().unwrap().planner.s_curve) =
+        (PathChoice::Tolerance, true);
     let averaged = Machine::new(config).unwrap();
-    config.planner.jerk_limit = Some(JerkChoice::Path);
+    config.steppers_mut().unwrap().planner.jerk_limit = Some(JerkChoice::Path);
     let along = Machine::new(config).unwrap();
     let made = [&averaged, &along].map(|machine| record(machine, spoken, &header, script, &talk));
     assert_eq!(record(&averaged, spoken, &header, script, &talk), made[0], "not twice alike");

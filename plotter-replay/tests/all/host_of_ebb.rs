@@ -19,8 +19,9 @@ type Host = EbbHost<CoreXy, std::vec::IntoIter<PlotOp>>;
 fn machine() -> Machine {
     let mut config = MachineConfig::stepper_plotter();
     config.serial.baud = 1_000_000;
-    for axis in [&mut config.x, &mut config.y] {
-        (axis.stepper.steps_per_mm, axis.stepper.max_rate_hz) = (STEPS_PER_MM, 25_000.0);
+    let steppers = config.steppers_mut().unwrap();
+    for axis in [&mut steppers.x, &mut steppers.y] {
+        (axis.steps_per_mm, axis.max_rate_hz) = (STEPS_PER_MM, 25_000.0);
     }
     Machine::new(config).unwrap()
 }

@@ -15,10 +15,14 @@ const LONG: Duration = Duration::from_secs(3_600);
 pub(crate) fn machine() -> Machine {
     let mut config = MachineConfig::stepper_plotter();
     (config.area.width_mm, config.area.height_mm) = (60.0, 40.0);
-    (config.homing.known_travel_mm, config.homing.max_travel_mm) = (0.0, 80.0);
-    config.pen.settle_ms = 20.0;
-    for axis in [&mut config.x, &mut config.y] {
-        axis.stepper.steps_per_mm = 20.0;
+    (
+        config.steppers_mut().unwrap().homing.known_travel_mm,
+        config.steppers_mut().unwrap().homing.max_travel_mm,
+    ) = (0.0, 80.0);
+    config.steppers_mut().unwrap().pen.settle_ms = 20.0;
+    let steppers = config.steppers_mut().unwrap();
+    for axis in [&mut steppers.x, &mut steppers.y] {
+        axis.steps_per_mm = 20.0;
     }
     Machine::new(config).unwrap()
 }

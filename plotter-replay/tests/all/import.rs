@@ -152,7 +152,7 @@ fn saleae_logic_2_with_two_analyzers_in_one_file() {
     let text = "name,type,start_time,duration,\"data\",\"error\"\n\
         \"To plotter\",\"data\",0.0001,0.0000390625,0x02,\n\"From plotter\",\"data\",0.0002,0.0000390625,0x31,\n\
         \"From plotter\",\"other\",0.0002,0.0000390625,,\n\"To plotter\",\"data\",0.0003,0.00004,0x0,\"framing\"\n";
-    let settings = ImportSettings { host: Some("To plotter".into()), ..ImportSettings::default() };
+    let settings = ImportSettings::default().with_host(Some("To plotter".into()));
     let came =
         run(vec![source("x", detect(text.as_bytes()).unwrap(), None, text.as_bytes())], &settings).unwrap();
     assert_eq!(shown(&came.records), ["139 > 02", "239 < 31", "340 > 00"]);
@@ -183,7 +183,7 @@ fn sigrok_with_bits_and_errors_among_the_bytes() {
             "D.txt line 3: a byte without its samples: run with --protocol-decoder-samplenum",
         ]
     );
-    let rate = ImportSettings { sample_rate_hz: Some(1e6), ..ImportSettings::default() };
+    let rate = ImportSettings::default().with_sample_rate_hz(Some(1e6));
     let came = run(vec![source("H.txt", Tool::Sigrok, None, b"92-172 uart-1: 02\n")], &rate).unwrap();
     assert_eq!(shown(&came.records), ["182 > 02"]);
 }

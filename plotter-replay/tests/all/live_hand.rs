@@ -19,7 +19,11 @@ const AREA: StepPoint = StepPoint::new(23_760, 16_800);
 
 fn settings(link: LinkChoice) -> SessionSettings {
     let plan = Some(Plan { targets: 4, way_mm: 120.0 });
-    SessionSettings { byte_gap: Duration::ZERO, plan, link, most: Some(AREA), ..SessionSettings::default() }
+    SessionSettings::default()
+        .with_byte_gap(Duration::ZERO)
+        .with_plan(plan)
+        .with_link(link)
+        .with_most(Some(AREA))
 }
 
 fn down(x: i32, y: i32) -> DrawingStep {
@@ -244,7 +248,7 @@ fn a_pen_and_a_sheet_are_waited_for_and_named() {
             DrawingStep::Sheet,
             down(400, 800),
         ];
-        let settings = SessionSettings { pens: vec![(2, String::from("red"))], ..settings(link) };
+        let settings = settings(link).with_pens(vec![(2, String::from("red"))]);
         let wants = |words: &'static str, reached| {
             look(move |session, now| {
                 assert_eq!(session.wants(), words);
@@ -294,7 +298,7 @@ fn the_origin_is_set_where_the_pen_is_and_a_drawing_that_leads_outside_from_ther
         let recording = Some(Recording::Line(create(&path, &header).unwrap()));
         let line = SimulatedMachine::new(&machine(), boot).unwrap().line(AS_FAST_AS_IT_GOES);
         let bounds = Some((StepPoint::default(), StepPoint::new(800, 800)));
-        let settings = SessionSettings { bounds, ..settings(link) };
+        let settings = settings(link).with_bounds(bounds);
         let steps = vec![
             hand("go 580 100"),
             until_it_rests(1),
@@ -354,32 +358,29 @@ fn a_stop_leaves_nothing_of_what_was_asked_by_hand() {
 fn board(controller: ControllerChoice) -> Machine {
     let mut config = MachineConfig::marking_board();
     config.serial.byte_gap_ms = 0.0;
-    config.control.controller = controller;
+    config.dc_mut().unwrap().control.controller = controller;
     // The ramp of the report's panel: a step every 100 ms.
-    config.point_to_point.drive_start = 0.15;
-    config.point_to_point.drive_step = 0.05;
-    config.point_to_point.drive_step_ms = 100.0;
+    config.belt_mut().unwrap().point_to_point.drive_start = 0.15;
+    config.belt_mut().unwrap().point_to_point.drive_step = 0.05;
+    config.belt_mut().unwrap().point_to_point.drive_step_ms = 100.0;
     Machine::new(config).unwrap()
 }
 
 fn board_settings(tolerance_counts: u32) -> SessionSettings {
-    let plotter = PlotterSettings {
-        x_mm_per_pulse: 1.0 / 46.3,
-        y_mm_per_pulse: 1.0 / 46.3,
-        begins_at: Some(Point::new(150.0, 100.0)),
-        reached_tolerance_counts: tolerance_counts,
-        ..PlotterSettings::default()
-    };
+    let plotter = PlotterSettings::default()
+        .with_x_mm_per_pulse(1.0 / 46.3)
+        .with_y_mm_per_pulse(1.0 / 46.3)
+        .with_begins_at(Some(Point::new(150.0, 100.0)))
+        .with_reached_tolerance_counts(tolerance_counts);
     let settings = settings(LinkChoice::Digits);
-    SessionSettings {
-        stands_at: plotter.to_counts(Point::new(150.0, 100.0)),
-        host: plotter_motion::protocol::HostSettings { tolerance_counts, ..settings.host },
-        most: Some(StepPoint::new(13_890, 9_260)),
-        pwm_steps: [SimulatedMachine::BELT_PWM_STEPS; 2],
-        ramps: true,
-        plotter,
-        ..settings
-    }
+    let host = plotter_motion::protocol::HostSettings { tolerance_counts, ..settings.host };
+    settings
+        .with_stands_at(plotter.to_counts(Point::new(150.0, 100.0)))
+        .with_host(host)
+        .with_most(Some(StepPoint::new(13_890, 9_260)))
+        .with_pwm_steps([SimulatedMachine::BELT_PWM_STEPS; 2])
+        .with_ramps(true)
+        .with_plotter(plotter)
 }
 
 /// "Acceleration is implemented in the manual control panel": the drive grows by a step every 100 ms for as

@@ -107,13 +107,11 @@ fn target(n: u64) -> PenMove {
 fn watched(targets: u64) -> (f64, usize) {
     let mut page = LivePage::new("quick", PlotterSettings::default());
     (0..targets).for_each(|n| page.push(target(n)));
-    let settings = SessionSettings {
-        byte_gap: Duration::ZERO,
-        link: LinkChoice::Digits,
-        baud: 1_000_000_000,
-        plan: Some(Plan { targets, way_mm: page.plan().way_mm }),
-        ..SessionSettings::default()
-    };
+    let settings = SessionSettings::default()
+        .with_byte_gap(Duration::ZERO)
+        .with_link(LinkChoice::Digits)
+        .with_baud(1_000_000_000)
+        .with_plan(Some(Plan { targets, way_mm: page.plan().way_mm }));
     let drawing = Box::new((0..targets).map(|n| DrawingStep::from(target(n))));
     let session =
         Session::open(Arc::new(Quick::default()), Some(drawing), None::<Recording<LogFile>>, None, settings);
@@ -133,7 +131,7 @@ fn watched_on_grbl(operations: u64) -> (f64, usize) {
     page.takes(table.finish());
     let options = WriteOptions { settle: Duration::ZERO, ..WriteOptions::default() };
     let host = LineHost::new(Grbl::new(options), LineHostSettings::default(), (0..operations).map(operation));
-    let settings = SessionSettings { baud: 1_000_000_000, ..SessionSettings::default() };
+    let settings = SessionSettings::default().with_baud(1_000_000_000);
     let line = Arc::new(Obedient::default());
     let session = Session::hosted(line, Box::new(host), Some(table), None::<Recording<LogFile>>, settings);
     while session.state() != State::Ready {

@@ -26,7 +26,7 @@ fn square() -> Vec<PenMove> {
 
 fn settings(targets: u64) -> SessionSettings {
     let plan = Some(Plan { targets, way_mm: 120.0 });
-    SessionSettings { byte_gap: Duration::ZERO, plan, ..SessionSettings::default() }
+    SessionSettings::default().with_byte_gap(Duration::ZERO).with_plan(plan)
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn an_emergency_stop_takes_the_drive_within_one_control_period() {
     }
     let session = watched(line, square(), None::<Recording<LogFile>>, settings(4), steps);
     assert_eq!(session.reached(), 4);
-    let period = Duration::from_secs_f64(1.0 / machine.config().control.contouring.loop_hz);
+    let period = Duration::from_secs_f64(1.0 / machine.config().dc().unwrap().control.contouring.loop_hz);
     let stops = stops.lock().unwrap();
     assert!(stops.len() == 3 && stops.iter().all(|&(pressed, off)| off - pressed <= period), "{stops:?}");
     assert_eq!(*moved.lock().unwrap(), 0, "moved while it was stopped");
@@ -176,7 +176,7 @@ fn a_session_with_a_simulated_machine_is_run_again_to_the_same_bytes() {
         let line =
             SimulatedMachine::new(&machine, boot).unwrap().logged(log.clone()).line(AS_FAST_AS_IT_GOES);
         let link = if boot.is_some() { LinkChoice::Frames } else { LinkChoice::Digits };
-        let settings = SessionSettings { link, ..settings(4) };
+        let settings = settings(4).with_link(link);
         let steps = vec![
             ask_for(Command::Start),
             until_it_moves(),

@@ -101,7 +101,7 @@ fn a_byte_takes_ten_bit_times_and_waits_for_the_one_before() {
     let late = difference(check(&[edge(100), said(141, b"1")], Counter::default()));
     assert_eq!(late.expected, Answer::Byte { time: us(141), byte: b'1' });
     assert_eq!(late.got, Answer::Byte { time: us(140), byte: b'1' });
-    let slow = Player::new(PlayerSettings { baud: 9_600, ..PlayerSettings::default() });
+    let slow = Player::new(PlayerSettings::default().with_baud(9_600));
     assert!(slow.check([edge(100), said(1_142, b"1")], Counter::default()).is_equal()); // 1041.667 us
 }
 
@@ -142,7 +142,7 @@ fn an_answer_that_is_missing_or_too_much_is_the_difference() {
 fn a_tolerance_lets_grouped_bytes_pass() {
     let records = [edge(100), edge(150), said(300, b"11"), host(2_000, 1)];
     assert!(!check(&records, Counter::default()).is_equal());
-    let real = Player::new(PlayerSettings { tolerance: us(1_000), ..PlayerSettings::default() });
+    let real = Player::new(PlayerSettings::default().with_tolerance(us(1_000)));
     assert!(real.check(records, Counter::default()).is_equal());
     assert!(!real.check([edge(100), said(1_141, b"1")], Counter::default()).is_equal());
 }

@@ -113,7 +113,7 @@ fn the_golden_line_still_replays() {
 fn another_controller_differs_and_the_place_is_told() {
     let recorded = machine(ControllerChoice::Contouring);
     let mut config = *recorded.config();
-    config.control.contouring.feed_mm_s *= 0.5;
+    config.dc_mut().unwrap().control.contouring.feed_mm_s *= 0.5;
     let slower = Machine::new(config).unwrap();
     let outcome = Player::default().check(records(&session(&recorded)), MachineController::new(&slower));
     let Outcome::FirstDifference(difference) = outcome else { panic!("equal, though the feed is another") };
@@ -147,7 +147,7 @@ fn without_edges_the_answers_are_compared_from_the_pulses() {
     let edges = EdgeSource::from_records(&without);
     assert_eq!(edges, EdgeSource::Pulses);
     let tolerance = Duration::from_millis(50);
-    let player = Player::new(PlayerSettings { edges, tolerance, ..PlayerSettings::default() });
+    let player = Player::new(PlayerSettings::default().with_edges(edges).with_tolerance(tolerance));
     match player.check(without, MachineController::new(&machine)) {
         Outcome::Equal(compared) => assert_eq!(compared.bytes, 9), // one answer to each target
         Outcome::FirstDifference(difference) => panic!("{difference}"),
@@ -191,7 +191,7 @@ fn a_golden_recording_holds_fails_and_is_renewed() {
     golden::check(&path, || MachineController::new(&machine), golden::Mode::Compare).unwrap();
 
     let mut config = *machine.config();
-    config.control.contouring.bandwidth_hz *= 0.8;
+    config.dc_mut().unwrap().control.contouring.bandwidth_hz *= 0.8;
     let other = Machine::new(config).unwrap();
     let error = golden::check(&path, || MachineController::new(&other), golden::Mode::Compare).unwrap_err();
     assert!(error.to_string().contains("first difference at "), "{error}");

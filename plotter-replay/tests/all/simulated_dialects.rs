@@ -103,7 +103,7 @@ impl Session {
         let header = reader.header().clone();
         let records: Vec<Record> = reader.map(Result::unwrap).collect();
         let controller = AnyController::for_header(&header, Some(&machine())).unwrap();
-        let player = Player::new(PlayerSettings { ..PlayerSettings::for_recording(&header, &records) });
+        let player = Player::new(PlayerSettings::for_recording(&header, &records));
         let outcome = player.check(records.clone(), controller);
         assert!(outcome.is_equal(), "{} {outcome:?}", protocol(self.spoken));
         Drawn { records, path, directory: self.directory }

@@ -357,8 +357,8 @@ fn any_bytes_are_taken_and_the_board_answers_after_them() {
 
 fn machine() -> Machine {
     let mut config = MachineConfig::stepper_plotter();
-    config.x.stepper.steps_per_mm = 80.0;
-    config.y.stepper.steps_per_mm = 80.0;
+    config.steppers_mut().unwrap().x.steps_per_mm = 80.0;
+    config.steppers_mut().unwrap().y.steps_per_mm = 80.0;
     Machine::new(config).unwrap()
 }
 

@@ -178,7 +178,7 @@ fn the_drawing_or_the_log_tells_the_pen() {
 
 #[test]
 fn the_present_state_is_known_at_any_time() {
-    let settings = PlotterSettings { p1: Point::new(100.0, 50.0), ..PlotterSettings::default() };
+    let settings = PlotterSettings::default().with_p1(Point::new(100.0, 50.0));
     let mut plotter = VirtualPlotter::new(settings);
     let line = Line::default().target(40, 80).says("1333");
     line.records.iter().for_each(|record| plotter.push(record));
@@ -193,7 +193,7 @@ fn the_present_state_is_known_at_any_time() {
 
 #[test]
 fn a_path_longer_than_the_limit_still_counts() {
-    let settings = PlotterSettings { max_points: 100, max_entries: 5, ..PlotterSettings::default() };
+    let settings = PlotterSettings::default().with_max_points(100).with_max_entries(5);
     let mut line = Line::default();
     for n in 1..=50 {
         line = line.target(10 * n, 0).says(&"1".repeat(10)).says("+");
@@ -234,15 +234,13 @@ proptest! {
 /// A marking board: no digits and no pulses on a line, but targets and edges of the two motors of its belt.
 #[test]
 fn a_belt_is_drawn_from_its_edges() {
-    let settings = PlotterSettings {
-        belt: Some(BeltSigns::DirectionTable),
-        counted_by: CountedBy::Edges,
-        x_mm_per_pulse: 0.1,
-        y_mm_per_pulse: 0.1,
-        p1: Point::new(150.0, 100.0),
-        reached_tolerance_counts: 1,
-        ..PlotterSettings::default()
-    };
+    let settings = PlotterSettings::default()
+        .with_belt(Some(BeltSigns::DirectionTable))
+        .with_counted_by(CountedBy::Edges)
+        .with_x_mm_per_pulse(0.1)
+        .with_y_mm_per_pulse(0.1)
+        .with_p1(Point::new(150.0, 100.0))
+        .with_reached_tolerance_counts(1);
     let edge = |axis| Event::Edge { axis, sign: Direction::Plus };
     let mut line = Line::default().event(Event::Pen(Pen::Down)).event(Event::Target { x: 0, y: 4 });
     for _ in 0..3 {

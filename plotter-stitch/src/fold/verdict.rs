@@ -53,6 +53,7 @@ const OF_DEVIATION: f64 = 1.482_602_218_505_602;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct FoldTest {
     /// Share of the flat sheets that may be taken for folded ones; above 0, below one half.
     pub false_alarms: f64,
@@ -65,6 +66,38 @@ pub struct FoldTest {
     pub each_mm: f64,
     /// Least number of scans that must see the line both times.
     pub least_scans: usize,
+}
+
+impl FoldTest {
+    /// The same with another [`FoldTest::false_alarms`].
+    #[must_use]
+    pub const fn with_false_alarms(self, false_alarms: f64) -> Self {
+        Self { false_alarms, ..self }
+    }
+
+    /// The same with another [`FoldTest::mean_mm`].
+    #[must_use]
+    pub const fn with_mean_mm(self, mean_mm: f64) -> Self {
+        Self { mean_mm, ..self }
+    }
+
+    /// The same with another [`FoldTest::common_mm`].
+    #[must_use]
+    pub const fn with_common_mm(self, common_mm: f64) -> Self {
+        Self { common_mm, ..self }
+    }
+
+    /// The same with another [`FoldTest::each_mm`].
+    #[must_use]
+    pub const fn with_each_mm(self, each_mm: f64) -> Self {
+        Self { each_mm, ..self }
+    }
+
+    /// The same with another [`FoldTest::least_scans`].
+    #[must_use]
+    pub const fn with_least_scans(self, least_scans: usize) -> Self {
+        Self { least_scans, ..self }
+    }
 }
 
 impl Default for FoldTest {

@@ -14,6 +14,7 @@ const SHORTEST_EDGE_MM: f64 = 10.0;
 /// What an anchor knows of its sheet, and how much it may add at a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct AnchorSettings {
     /// Length of a frame, mm.
     pub frame_mm: f64,
@@ -23,6 +24,32 @@ pub struct AnchorSettings {
     pub most_mm: f64,
     /// Standard deviation of where the edge is found, from where a straight one would be, mm.
     pub edge_sigma_mm: f64,
+}
+
+impl AnchorSettings {
+    /// The same with another [`AnchorSettings::frame_mm`].
+    #[must_use]
+    pub const fn with_frame_mm(self, frame_mm: f64) -> Self {
+        Self { frame_mm, ..self }
+    }
+
+    /// The same with another [`AnchorSettings::joint`].
+    #[must_use]
+    pub const fn with_joint(self, joint: [Point; 2]) -> Self {
+        Self { joint, ..self }
+    }
+
+    /// The same with another [`AnchorSettings::most_mm`].
+    #[must_use]
+    pub const fn with_most_mm(self, most_mm: f64) -> Self {
+        Self { most_mm, ..self }
+    }
+
+    /// The same with another [`AnchorSettings::edge_sigma_mm`].
+    #[must_use]
+    pub const fn with_edge_sigma_mm(self, edge_sigma_mm: f64) -> Self {
+        Self { edge_sigma_mm, ..self }
+    }
 }
 
 impl Default for AnchorSettings {

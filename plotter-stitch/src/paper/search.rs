@@ -18,6 +18,7 @@ const ROWS: usize = 5;
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct PaperSettings {
     /// The optical head.
     pub optics: Optics,
@@ -29,6 +30,38 @@ pub struct PaperSettings {
     pub speed_mm_s: f64,
     /// Paper is where nothing dark is seen over this length, mm: a slit of light in a torn edge is none.
     pub least_mm: f64,
+}
+
+impl PaperSettings {
+    /// The same with another [`PaperSettings::optics`].
+    #[must_use]
+    pub const fn with_optics(self, optics: Optics) -> Self {
+        Self { optics, ..self }
+    }
+
+    /// The same with another [`PaperSettings::reach_mm`].
+    #[must_use]
+    pub const fn with_reach_mm(self, reach_mm: [f64; 2]) -> Self {
+        Self { reach_mm, ..self }
+    }
+
+    /// The same with another [`PaperSettings::rows_mm`].
+    #[must_use]
+    pub const fn with_rows_mm(self, rows_mm: [f64; 2]) -> Self {
+        Self { rows_mm, ..self }
+    }
+
+    /// The same with another [`PaperSettings::speed_mm_s`].
+    #[must_use]
+    pub const fn with_speed_mm_s(self, speed_mm_s: f64) -> Self {
+        Self { speed_mm_s, ..self }
+    }
+
+    /// The same with another [`PaperSettings::least_mm`].
+    #[must_use]
+    pub const fn with_least_mm(self, least_mm: f64) -> Self {
+        Self { least_mm, ..self }
+    }
 }
 
 impl Default for PaperSettings {

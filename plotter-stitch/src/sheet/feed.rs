@@ -15,6 +15,7 @@ use plotter_motion::Vec2;
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct FeedSettings {
     /// Greatest error of the distance that the paper is moved, mm.
     pub rewind_mm: f64,
@@ -36,6 +37,62 @@ pub struct FeedSettings {
     pub folds: f64,
     /// Distance between the two strokes of a probe across a fold: least and greatest, mm.
     pub fold_mm: [f64; 2],
+}
+
+impl FeedSettings {
+    /// The same with another [`FeedSettings::rewind_mm`].
+    #[must_use]
+    pub const fn with_rewind_mm(self, rewind_mm: f64) -> Self {
+        Self { rewind_mm, ..self }
+    }
+
+    /// The same with another [`FeedSettings::walk_mm`].
+    #[must_use]
+    pub const fn with_walk_mm(self, walk_mm: [f64; 2]) -> Self {
+        Self { walk_mm, ..self }
+    }
+
+    /// The same with another [`FeedSettings::turn_rad`].
+    #[must_use]
+    pub const fn with_turn_rad(self, turn_rad: [f64; 2]) -> Self {
+        Self { turn_rad, ..self }
+    }
+
+    /// The same with another [`FeedSettings::most_turn_rad`].
+    #[must_use]
+    pub const fn with_most_turn_rad(self, most_turn_rad: f64) -> Self {
+        Self { most_turn_rad, ..self }
+    }
+
+    /// The same with another [`FeedSettings::led`].
+    #[must_use]
+    pub const fn with_led(self, led: f64) -> Self {
+        Self { led, ..self }
+    }
+
+    /// The same with another [`FeedSettings::stretch`].
+    #[must_use]
+    pub const fn with_stretch(self, stretch: f64) -> Self {
+        Self { stretch, ..self }
+    }
+
+    /// The same with another [`FeedSettings::swelling`].
+    #[must_use]
+    pub const fn with_swelling(self, swelling: f64) -> Self {
+        Self { swelling, ..self }
+    }
+
+    /// The same with another [`FeedSettings::folds`].
+    #[must_use]
+    pub const fn with_folds(self, folds: f64) -> Self {
+        Self { folds, ..self }
+    }
+
+    /// The same with another [`FeedSettings::fold_mm`].
+    #[must_use]
+    pub const fn with_fold_mm(self, fold_mm: [f64; 2]) -> Self {
+        Self { fold_mm, ..self }
+    }
 }
 
 impl Default for FeedSettings {

@@ -29,6 +29,7 @@ const PUBLISHED_SIGMA: JointSigma = JointSigma { lateral_mm: 0.17, angle_rad: 1.
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct SheetSettings {
     /// How the paper is moved.
     pub feed: FeedSettings,
@@ -43,6 +44,44 @@ pub struct SheetSettings {
     /// The most that lines may be moved at a joint to keep the drawing along the edge, mm; 0 for a sheet
     /// without an anchor.
     pub anchor_mm: f64,
+}
+
+impl SheetSettings {
+    /// The same with another [`SheetSettings::feed`].
+    #[must_use]
+    pub const fn with_feed(self, feed: FeedSettings) -> Self {
+        Self { feed, ..self }
+    }
+
+    /// The same with another [`SheetSettings::optics`].
+    #[must_use]
+    pub const fn with_optics(self, optics: Optics) -> Self {
+        Self { optics, ..self }
+    }
+
+    /// The same with another [`SheetSettings::noise`].
+    #[must_use]
+    pub const fn with_noise(self, noise: SensorNoise) -> Self {
+        Self { noise, ..self }
+    }
+
+    /// The same with another [`SheetSettings::edge_mm`].
+    #[must_use]
+    pub const fn with_edge_mm(self, edge_mm: f64) -> Self {
+        Self { edge_mm, ..self }
+    }
+
+    /// The same with another [`SheetSettings::field`].
+    #[must_use]
+    pub const fn with_field(self, field: Field) -> Self {
+        Self { field, ..self }
+    }
+
+    /// The same with another [`SheetSettings::anchor_mm`].
+    #[must_use]
+    pub const fn with_anchor_mm(self, anchor_mm: f64) -> Self {
+        Self { anchor_mm, ..self }
+    }
 }
 
 impl Default for SheetSettings {

@@ -8,6 +8,7 @@ mod method;
 pub(crate) mod noise;
 mod probe;
 mod sensor;
+mod sheet_config;
 
 pub use edge::PaperEdge;
 pub use feed::{Feed, FeedSettings, PaperMove};
@@ -16,3 +17,4 @@ pub use long_sheet::{JointReport, LongSheet, SheetSettings};
 pub use method::{JoinError, JoinFrames, Joined, PublishedJoin, StripJoin};
 pub use probe::SensedProbe;
 pub use sensor::{SensedJoint, SensorNoise};
+pub use sheet_config::SheetConfig;

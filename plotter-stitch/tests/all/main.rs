@@ -15,6 +15,8 @@ mod chain_precision;
 mod golden_split;
 mod joints;
 mod judge;
+#[cfg(feature = "toml")]
+mod machine_section;
 mod prop_fold;
 mod prop_frame_transform;
 mod prop_rigid;

@@ -13,8 +13,8 @@ fn ours() -> StripJoin {
 }
 
 fn folding(share: f64) -> SheetSettings {
-    let feed = FeedSettings { folds: share, ..FeedSettings::default() };
-    SheetSettings { feed, ..SheetSettings::default() }
+    let feed = FeedSettings::default().with_folds(share);
+    SheetSettings::default().with_feed(feed)
 }
 
 /// A frame with a line on both diagonals' middle: the square must lie beside it.
@@ -114,9 +114,8 @@ fn a_frame_without_an_empty_square_is_told() {
 #[test]
 fn the_diagonal_follows_the_walk() {
     for (walk_mm, along_y) in [(1.0, -1.0), (-1.0, 1.0)] {
-        let feed =
-            FeedSettings { walk_mm: [walk_mm, 0.0], turn_rad: [0.0; 2], led: 0.0, ..FeedSettings::default() };
-        let settings = SheetSettings { feed, anchor_mm: 0.0, ..SheetSettings::default() };
+        let feed = FeedSettings::default().with_walk_mm([walk_mm, 0.0]).with_turn_rad([0.0; 2]).with_led(0.0);
+        let settings = SheetSettings::default().with_feed(feed).with_anchor_mm(0.0);
         let mut ours = LongSheet::new(settings, ours(), 7).unwrap();
         let mut published = LongSheet::new(settings, PublishedJoin::default(), 7).unwrap();
         for _ in 0..5 {
@@ -183,7 +182,7 @@ fn marks_that_fold_with_the_paper_are_refused() {
 #[test]
 fn a_broken_frame_change_draws_nothing() {
     let noise = SensorNoise { missed: 0.6, ..SensorNoise::default() };
-    let settings = SheetSettings { noise, ..SheetSettings::default() };
+    let settings = SheetSettings::default().with_noise(noise);
     let mut broken = 0;
     let mut sheet = LongSheet::new(settings, ours(), 2).unwrap();
     for number in 1..=20 {
@@ -214,8 +213,8 @@ fn a_broken_frame_change_draws_nothing() {
 /// looked. Paper that has swollen does not.
 #[test]
 fn who_has_seen_flat_paper_may_say_so() {
-    let feed = FeedSettings { swelling: 2e-4, ..FeedSettings::default() };
-    let settings = SheetSettings { feed, anchor_mm: 0.0, ..SheetSettings::default() };
+    let feed = FeedSettings::default().with_swelling(2e-4);
+    let settings = SheetSettings::default().with_feed(feed).with_anchor_mm(0.0);
     let (mut doubted, mut told) = (0, 0);
     for seed in 0..80 {
         let mut sheet = LongSheet::new(settings, ours(), seed).unwrap();

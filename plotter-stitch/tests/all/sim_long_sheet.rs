@@ -49,11 +49,11 @@ fn draw<M: JoinFrames>(settings: SheetSettings, method: M, seed: u64, joints: u3
 
 fn ours(anchor_mm: f64, seed: u64, joints: u32) -> Outcome {
     let join = StripJoin::new(&ReferenceLines::strip16(), SearchSettings::default());
-    draw(SheetSettings { anchor_mm, ..SheetSettings::default() }, join, seed, joints)
+    draw(SheetSettings::default().with_anchor_mm(anchor_mm), join, seed, joints)
 }
 
 fn published(seed: u64, joints: u32) -> Outcome {
-    let settings = SheetSettings { anchor_mm: 0.0, ..SheetSettings::default() };
+    let settings = SheetSettings::default().with_anchor_mm(0.0);
     draw(settings, PublishedJoin::default(), seed, joints)
 }
 

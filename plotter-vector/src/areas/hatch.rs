@@ -11,7 +11,12 @@ use crate::stroke::PxPoint;
 /// How an area is hatched. The lines' distance from the picture's corner is the same in all areas, so that
 /// bands and neighbours fit together.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+#[non_exhaustive]
 pub struct Hatch {
     /// From line to line, px; at least [`MIN_PITCH_PX`]. Up to the pen's width the ink closes, and the whole
     /// area is covered.
@@ -23,6 +28,32 @@ pub struct Hatch {
     /// Longest way along the area's border from one line to the next with the pen down, px; 0 lifts it after
     /// every line.
     pub max_join_px: f64,
+}
+
+impl Hatch {
+    /// The same with another [`Hatch::pitch_px`].
+    #[must_use]
+    pub const fn with_pitch_px(self, pitch_px: f64) -> Self {
+        Self { pitch_px, ..self }
+    }
+
+    /// The same with another [`Hatch::angle_rad`].
+    #[must_use]
+    pub const fn with_angle_rad(self, angle_rad: f64) -> Self {
+        Self { angle_rad, ..self }
+    }
+
+    /// The same with another [`Hatch::cross`].
+    #[must_use]
+    pub const fn with_cross(self, cross: bool) -> Self {
+        Self { cross, ..self }
+    }
+
+    /// The same with another [`Hatch::max_join_px`].
+    #[must_use]
+    pub const fn with_max_join_px(self, max_join_px: f64) -> Self {
+        Self { max_join_px, ..self }
+    }
 }
 
 /// Least distance of hatching lines, px: closer ones are finer than the picture.

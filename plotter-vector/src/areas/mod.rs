@@ -22,6 +22,7 @@ use core::fmt;
 /// What is drawn of an area.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[non_exhaustive]
 pub enum AreaStyle {
     /// Its borders.
     #[default]
@@ -37,14 +38,19 @@ pub enum AreaStyle {
 /// ```
 /// # use plotter_vector::{Bitmap, areas::{AreaStyle, Areas, Hatch}};
 /// let square = Bitmap::from_picture(&"############\n".repeat(12))?;
-/// let hatch = Hatch { pitch_px: 2.0, angle_rad: 0.0, ..Hatch::default() };
-/// let areas = Areas { style: AreaStyle::OutlineAndHatch(hatch), pen_px: 2.0 };
+/// let hatch = Hatch::default().with_pitch_px(2.0).with_angle_rad(0.0);
+/// let areas = Areas::default().with_style(AreaStyle::OutlineAndHatch(hatch)).with_pen_px(2.0);
 /// let paths: Vec<_> = areas.paths(&square)?.collect();
 /// assert_eq!(paths.iter().map(|path| path.closed).collect::<Vec<_>>(), [true, false]); // the zigzag needs one stroke
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+#[non_exhaustive]
 pub struct Areas {
     /// What is drawn.
     pub style: AreaStyle,
@@ -52,6 +58,20 @@ pub struct Areas {
     /// 0 draws the edge itself. Of parts narrower than the pen nothing is drawn: split lines off at the pen's
     /// width at least.
     pub pen_px: f64,
+}
+
+impl Areas {
+    /// The same with another [`Areas::style`].
+    #[must_use]
+    pub const fn with_style(self, style: AreaStyle) -> Self {
+        Self { style, ..self }
+    }
+
+    /// The same with another [`Areas::pen_px`].
+    #[must_use]
+    pub const fn with_pen_px(self, pen_px: f64) -> Self {
+        Self { pen_px, ..self }
+    }
 }
 
 impl Default for Areas {

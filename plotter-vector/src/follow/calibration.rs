@@ -62,7 +62,7 @@ impl core::error::Error for CalibrationError {}
 ///     (vec![PxPoint::new(at, 0.0), PxPoint::new(at, 400.0)], 3.0),
 /// ]).collect();
 /// let lens = Lens { barrel: 0.05 };
-/// let mut camera = SimulatedCamera::new(&Paper::drawn(400, 400, &grid)?, CameraSettings { lens, ..Default::default() });
+/// let mut camera = SimulatedCamera::new(&Paper::drawn(400, 400, &grid)?, CameraSettings::default().with_lens(lens));
 /// let correction = Correction::measured(&camera.window(PxPoint::new(200.0, 200.0)))?;
 /// // What lies 105 px right of the middle is shown where the lens has it.
 /// let shown = correction.shown(PxPoint::new(255.0, 150.0));
@@ -193,7 +193,7 @@ impl Correction {
     /// #     (vec![PxPoint::new(at, 0.0), PxPoint::new(at, 400.0)], 3.0),
     /// # ]).collect();
     /// // A grid with a line each 20 px, under a lens that bends it.
-    /// let bad = CameraSettings { lens: Lens { barrel: 0.08 }, rim_light: 1.0, ..Default::default() };
+    /// let bad = CameraSettings::default().with_lens(Lens { barrel: 0.08 }).with_rim_light(1.0);
     /// let mut camera = SimulatedCamera::new(&Paper::drawn(400, 400, &grid)?, bad);
     /// let window = camera.window(PxPoint::new(200.0, 200.0));
     /// let straight = Correction::measured(&window)?.corrected(&window);

@@ -15,6 +15,7 @@ const NOISE: usize = 1 << 14;
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct CameraSettings {
     /// Width of the window, px.
     pub width_px: u32,
@@ -32,6 +33,56 @@ pub struct CameraSettings {
     pub lens: Lens,
     /// Of the noise.
     pub seed: u64,
+}
+
+impl CameraSettings {
+    /// The same with another [`CameraSettings::width_px`].
+    #[must_use]
+    pub const fn with_width_px(self, width_px: u32) -> Self {
+        Self { width_px, ..self }
+    }
+
+    /// The same with another [`CameraSettings::height_px`].
+    #[must_use]
+    pub const fn with_height_px(self, height_px: u32) -> Self {
+        Self { height_px, ..self }
+    }
+
+    /// The same with another [`CameraSettings::blur_px`].
+    #[must_use]
+    pub const fn with_blur_px(self, blur_px: f64) -> Self {
+        Self { blur_px, ..self }
+    }
+
+    /// The same with another [`CameraSettings::noise_levels`].
+    #[must_use]
+    pub const fn with_noise_levels(self, noise_levels: f64) -> Self {
+        Self { noise_levels, ..self }
+    }
+
+    /// The same with another [`CameraSettings::rim_light`].
+    #[must_use]
+    pub const fn with_rim_light(self, rim_light: f64) -> Self {
+        Self { rim_light, ..self }
+    }
+
+    /// The same with another [`CameraSettings::white_level`].
+    #[must_use]
+    pub const fn with_white_level(self, white_level: f64) -> Self {
+        Self { white_level, ..self }
+    }
+
+    /// The same with another [`CameraSettings::lens`].
+    #[must_use]
+    pub const fn with_lens(self, lens: Lens) -> Self {
+        Self { lens, ..self }
+    }
+
+    /// The same with another [`CameraSettings::seed`].
+    #[must_use]
+    pub const fn with_seed(self, seed: u64) -> Self {
+        Self { seed, ..self }
+    }
 }
 
 impl Default for CameraSettings {
@@ -57,7 +108,7 @@ impl Default for CameraSettings {
 /// # use plotter_vector::{PxPoint, follow::{CameraSettings, Paper, SimulatedCamera}};
 /// let line = vec![PxPoint::new(0.0, 50.0), PxPoint::new(400.0, 50.0)];
 /// let paper = Paper::drawn(400, 100, &[(line, 8.0)])?;
-/// let mut camera = SimulatedCamera::new(&paper, CameraSettings { noise_levels: 0.0, ..Default::default() });
+/// let mut camera = SimulatedCamera::new(&paper, CameraSettings::default().with_noise_levels(0.0));
 /// let window = camera.window(PxPoint::new(200.0, 50.0));
 /// let level = |x, y| window.get(plotter_vector::Pixel::new(x, y)).unwrap();
 /// assert!(level(150, 150) < 20 && level(150, 100) > 200);

@@ -11,8 +11,8 @@ use crate::{
     areas::split_by_width,
     ink::{despeckle, pen_width_px},
     picture::{Bitmap, Gray, Pixel},
-    stroke::{Bounded, PxPoint, PxVec},
-    trace::Vectorizer,
+    stroke::{PxPoint, PxVec},
+    trace::Ours,
 };
 
 /// Side of the blocks in which the darkest and the lightest place are found, px.
@@ -151,12 +151,8 @@ impl Lines {
         let margin_px = (5.0 + 1.5 * width_px).max((MARGIN_WIDTHS * width_px).min(MARGIN_SHARE * side_px));
         let levels = flat.rows().flatten().map(|dark| super::whole::level(255.0 * (1.0 - dark))).collect();
         let grey = Gray::of_checked_size(ink.width(), ink.height(), levels);
-        let vectorizer = Vectorizer {
-            ours: Bounded { tolerance_px: 0.25 },
-            band_rows: ink.height().max(1),
-            ..Vectorizer::default()
-        };
-        let strokes = vectorizer.centring(max_line_px).strokes(&ink, Some((&grey, true)));
+        let ours = Ours { tolerance_px: 0.25, band_rows: ink.height().max(1), ..Ours::default() };
+        let strokes = ours.centring(max_line_px).strokes(&ink, Some((&grey, true)));
         let (width, height) = (f64::from(ink.width()), f64::from(ink.height()));
         let window = Window {
             width,

@@ -10,6 +10,7 @@ use crate::stroke::PxPoint;
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct MappingSettings {
     /// What the machine can reach, as commanded places: the upper left and the lower right corner. Without it, it follows anywhere,
     /// and looks only where lines lead.
@@ -26,6 +27,50 @@ pub struct MappingSettings {
     pub max_windows: u64,
     /// The correction of the lens.
     pub correction: Option<Correction>,
+}
+
+impl MappingSettings {
+    /// The same with another [`MappingSettings::area`].
+    #[must_use]
+    pub fn with_area(self, area: Option<[PxPoint; 2]>) -> Self {
+        Self { area, ..self }
+    }
+
+    /// The same with another [`MappingSettings::search`].
+    #[must_use]
+    pub fn with_search(self, search: bool) -> Self {
+        Self { search, ..self }
+    }
+
+    /// The same with another [`MappingSettings::step_px`].
+    #[must_use]
+    pub fn with_step_px(self, step_px: f64) -> Self {
+        Self { step_px, ..self }
+    }
+
+    /// The same with another [`MappingSettings::max_line_px`].
+    #[must_use]
+    pub fn with_max_line_px(self, max_line_px: u32) -> Self {
+        Self { max_line_px, ..self }
+    }
+
+    /// The same with another [`MappingSettings::max_tries`].
+    #[must_use]
+    pub fn with_max_tries(self, max_tries: u32) -> Self {
+        Self { max_tries, ..self }
+    }
+
+    /// The same with another [`MappingSettings::max_windows`].
+    #[must_use]
+    pub fn with_max_windows(self, max_windows: u64) -> Self {
+        Self { max_windows, ..self }
+    }
+
+    /// The same with another [`MappingSettings::correction`].
+    #[must_use]
+    pub fn with_correction(self, correction: Option<Correction>) -> Self {
+        Self { correction, ..self }
+    }
 }
 
 impl Default for MappingSettings {

@@ -27,6 +27,7 @@ pub enum Hand {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct PublishedSettings {
     /// Darker levels are line (section 4.8).
     pub level: u8,
@@ -50,6 +51,68 @@ pub struct PublishedSettings {
     pub area: Option<[PxPoint; 2]>,
     /// How many pictures in a row may show no line, or none that it can take a step on.
     pub max_tries: u32,
+}
+
+impl PublishedSettings {
+    /// The same with another [`PublishedSettings::level`].
+    #[must_use]
+    pub const fn with_level(self, level: u8) -> Self {
+        Self { level, ..self }
+    }
+
+    /// The same with another [`PublishedSettings::background`].
+    #[must_use]
+    pub const fn with_background(self, background: f64) -> Self {
+        Self { background, ..self }
+    }
+
+    /// The same with another [`PublishedSettings::min_run`].
+    #[must_use]
+    pub const fn with_min_run(self, min_run: usize) -> Self {
+        Self { min_run, ..self }
+    }
+
+    /// The same with another [`PublishedSettings::thinnest_px`].
+    #[must_use]
+    pub const fn with_thinnest_px(self, thinnest_px: u32) -> Self {
+        Self { thinnest_px, ..self }
+    }
+
+    /// The same with another [`PublishedSettings::max_points`].
+    #[must_use]
+    pub const fn with_max_points(self, max_points: usize) -> Self {
+        Self { max_points, ..self }
+    }
+
+    /// The same with another [`PublishedSettings::hand`].
+    #[must_use]
+    pub const fn with_hand(self, hand: Hand) -> Self {
+        Self { hand, ..self }
+    }
+
+    /// The same with another [`PublishedSettings::heading`].
+    #[must_use]
+    pub const fn with_heading(self, heading: PxVec) -> Self {
+        Self { heading, ..self }
+    }
+
+    /// The same with another [`PublishedSettings::only_connected`].
+    #[must_use]
+    pub const fn with_only_connected(self, only_connected: bool) -> Self {
+        Self { only_connected, ..self }
+    }
+
+    /// The same with another [`PublishedSettings::area`].
+    #[must_use]
+    pub const fn with_area(self, area: Option<[PxPoint; 2]>) -> Self {
+        Self { area, ..self }
+    }
+
+    /// The same with another [`PublishedSettings::max_tries`].
+    #[must_use]
+    pub const fn with_max_tries(self, max_tries: u32) -> Self {
+        Self { max_tries, ..self }
+    }
 }
 
 impl Default for PublishedSettings {

@@ -38,6 +38,7 @@ pub enum Polarity {
 /// );
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum ThresholdMethod {
     /// [`ThresholdMethod::Otsu`] where one level tells ink from paper all over the picture. Else, as in a
     /// photograph, of pencil, of faint lines or on ruled paper, the picture is evened first: the paper is
@@ -144,7 +145,12 @@ impl<'de> serde::Deserialize<'de> for ThresholdMethod {
 
 /// How ink is told from paper. The default finds everything from the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+#[non_exhaustive]
 pub struct Threshold {
     /// Which side of the level is ink.
     pub polarity: Polarity,
@@ -160,6 +166,38 @@ pub struct Threshold {
     /// Whether [`ThresholdMethod::Auto`] takes what is much paler than the lines for ink, too: the ruling of
     /// paper, and what shines through it.
     pub keep_pale: bool,
+}
+
+impl Threshold {
+    /// The same with another [`Threshold::polarity`].
+    #[must_use]
+    pub const fn with_polarity(self, polarity: Polarity) -> Self {
+        Self { polarity, ..self }
+    }
+
+    /// The same with another [`Threshold::method`].
+    #[must_use]
+    pub const fn with_method(self, method: ThresholdMethod) -> Self {
+        Self { method, ..self }
+    }
+
+    /// The same with another [`Threshold::window_px`].
+    #[must_use]
+    pub const fn with_window_px(self, window_px: u32) -> Self {
+        Self { window_px, ..self }
+    }
+
+    /// The same with another [`Threshold::min_contrast`].
+    #[must_use]
+    pub const fn with_min_contrast(self, min_contrast: u8) -> Self {
+        Self { min_contrast, ..self }
+    }
+
+    /// The same with another [`Threshold::keep_pale`].
+    #[must_use]
+    pub const fn with_keep_pale(self, keep_pale: bool) -> Self {
+        Self { keep_pale, ..self }
+    }
 }
 
 impl Default for Threshold {

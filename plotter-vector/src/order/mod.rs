@@ -36,6 +36,7 @@ const FARTHEST_PX: f64 = 1e12;
 /// How hard an order is searched for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
 pub enum OrderEffort {
     /// The given strokes in the given order.
     None,
@@ -81,7 +82,12 @@ pub enum OrderEffort {
 /// assert_eq!((ordered.strokes().len(), ordered.pen_up_px()), (3, 1.0 + 10.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+#[non_exhaustive]
 pub struct Order {
     /// How hard the order is searched for.
     pub effort: OrderEffort,
@@ -95,19 +101,66 @@ pub struct Order {
     pub one_stroke: bool,
     /// Whether pens are changed wherever that shortens the way, and not only once each: for drawings of one
     /// tool.
-    #[cfg_attr(feature = "serde", serde(default))]
     pub across_pens: bool,
     /// Whether ends within `merge_gap_px` are joined at corners too, where `one_stroke` is set: for files
     /// whose corners do not quite meet.
-    #[cfg_attr(feature = "serde", serde(default))]
     pub bridges_corners: bool,
     /// What lifting and lowering the pen costs, as the way that it travels in that time, px. The order with
     /// the least sum of travel and lifts is taken.
-    #[cfg_attr(feature = "serde", serde(default))]
     pub lift_px: f64,
     /// How lettering is found, so that each block of it is drawn in one go, in reading order; `None` does not
     /// look.
     pub lettering: Option<Lettering>,
+}
+
+impl Order {
+    /// The same with another [`Order::effort`].
+    #[must_use]
+    pub const fn with_effort(self, effort: OrderEffort) -> Self {
+        Self { effort, ..self }
+    }
+
+    /// The same with another [`Order::budget`].
+    #[must_use]
+    pub const fn with_budget(self, budget: u64) -> Self {
+        Self { budget, ..self }
+    }
+
+    /// The same with another [`Order::merge_gap_px`].
+    #[must_use]
+    pub const fn with_merge_gap_px(self, merge_gap_px: f64) -> Self {
+        Self { merge_gap_px, ..self }
+    }
+
+    /// The same with another [`Order::one_stroke`].
+    #[must_use]
+    pub const fn with_one_stroke(self, one_stroke: bool) -> Self {
+        Self { one_stroke, ..self }
+    }
+
+    /// The same with another [`Order::across_pens`].
+    #[must_use]
+    pub const fn with_across_pens(self, across_pens: bool) -> Self {
+        Self { across_pens, ..self }
+    }
+
+    /// The same with another [`Order::bridges_corners`].
+    #[must_use]
+    pub const fn with_bridges_corners(self, bridges_corners: bool) -> Self {
+        Self { bridges_corners, ..self }
+    }
+
+    /// The same with another [`Order::lift_px`].
+    #[must_use]
+    pub const fn with_lift_px(self, lift_px: f64) -> Self {
+        Self { lift_px, ..self }
+    }
+
+    /// The same with another [`Order::lettering`].
+    #[must_use]
+    pub const fn with_lettering(self, lettering: Option<Lettering>) -> Self {
+        Self { lettering, ..self }
+    }
 }
 
 /// Most that is looked at for a stroke. Fifty times as much shortened the travel by 0 to 2.7 per cent on

@@ -36,11 +36,31 @@ const MIRRORED: [(i32, i32); 8] = [(-1, 0), (-1, 1), (0, 1), (1, 1), (1, 0), (1,
 
 /// Settings of the published tracking.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+#[non_exhaustive]
 pub struct OrderedTracking {
     /// A walk of fewer pixels is undone and left for the scan from the opposite side, px.
     pub min_run: usize,
     /// Most figures that are recorded.
     pub max_figures: usize,
+}
+
+impl OrderedTracking {
+    /// The same with another [`OrderedTracking::min_run`].
+    #[must_use]
+    pub const fn with_min_run(self, min_run: usize) -> Self {
+        Self { min_run, ..self }
+    }
+
+    /// The same with another [`OrderedTracking::max_figures`].
+    #[must_use]
+    pub const fn with_max_figures(self, max_figures: usize) -> Self {
+        Self { max_figures, ..self }
+    }
 }
 
 impl Default for OrderedTracking {

@@ -13,11 +13,31 @@ use crate::picture::Pixel;
 ///
 /// Source: Öcal's thesis on a two-axis gantry, section 3.2, eq. 3.1 to 3.3.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+#[non_exhaustive]
 pub struct PreElimination {
     /// Distance of A and C from B along the figure, px.
     pub reach: usize,
     /// Tangent of the smallest angle that counts as a turn.
     pub tan_gamma: f64,
+}
+
+impl PreElimination {
+    /// The same with another [`PreElimination::reach`].
+    #[must_use]
+    pub const fn with_reach(self, reach: usize) -> Self {
+        Self { reach, ..self }
+    }
+
+    /// The same with another [`PreElimination::tan_gamma`].
+    #[must_use]
+    pub const fn with_tan_gamma(self, tan_gamma: f64) -> Self {
+        Self { tan_gamma, ..self }
+    }
 }
 
 impl Default for PreElimination {

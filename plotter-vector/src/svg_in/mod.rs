@@ -71,6 +71,7 @@ const MAX_DEPTH_ON_CALLERS_STACK: usize = 48;
 /// Which strokes are of one pen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[non_exhaustive]
 pub enum SvgPens {
     /// Those of one colour. Pens are numbered in the order in which they draw first; when there are more than
     /// [`MAX_PENS`](crate::ink::MAX_PENS) colours, the others are drawn by the pen of the nearest one, and
@@ -96,6 +97,7 @@ pub enum SvgPens {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct SvgOptions {
     /// Greatest distance of a curve from its chords, both ways, mm; 0.001 to 10.
     pub tolerance_mm: f64,
@@ -121,6 +123,62 @@ pub struct SvgOptions {
     /// Pixels to the inch: 96 in the standard, 72 and 90 in files of older programs. Lengths in mm and inches
     /// are what they are.
     pub px_per_inch: f64,
+}
+
+impl SvgOptions {
+    /// The same with another [`SvgOptions::tolerance_mm`].
+    #[must_use]
+    pub const fn with_tolerance_mm(self, tolerance_mm: f64) -> Self {
+        Self { tolerance_mm, ..self }
+    }
+
+    /// The same with another [`SvgOptions::arcs`].
+    #[must_use]
+    pub const fn with_arcs(self, arcs: bool) -> Self {
+        Self { arcs, ..self }
+    }
+
+    /// The same with another [`SvgOptions::pens`].
+    #[must_use]
+    pub const fn with_pens(self, pens: SvgPens) -> Self {
+        Self { pens, ..self }
+    }
+
+    /// The same with another [`SvgOptions::paper`].
+    #[must_use]
+    pub const fn with_paper(self, paper: Option<Rgb>) -> Self {
+        Self { paper, ..self }
+    }
+
+    /// The same with another [`SvgOptions::max_vertices`].
+    #[must_use]
+    pub const fn with_max_vertices(self, max_vertices: usize) -> Self {
+        Self { max_vertices, ..self }
+    }
+
+    /// The same with another [`SvgOptions::keeps_clipped`].
+    #[must_use]
+    pub const fn with_keeps_clipped(self, keeps_clipped: bool) -> Self {
+        Self { keeps_clipped, ..self }
+    }
+
+    /// The same with another [`SvgOptions::occludes`].
+    #[must_use]
+    pub const fn with_occludes(self, occludes: bool) -> Self {
+        Self { occludes, ..self }
+    }
+
+    /// The same with another [`SvgOptions::hatch`].
+    #[must_use]
+    pub const fn with_hatch(self, hatch: Option<Hatching>) -> Self {
+        Self { hatch, ..self }
+    }
+
+    /// The same with another [`SvgOptions::px_per_inch`].
+    #[must_use]
+    pub const fn with_px_per_inch(self, px_per_inch: f64) -> Self {
+        Self { px_per_inch, ..self }
+    }
 }
 
 impl SvgOptions {

@@ -105,8 +105,8 @@ impl Vectorizer {
         for (done, (pen, (ink, areas))) in
             (1..).zip(layers.palette().pens().iter().zip(inks.iter().zip(&openings)))
         {
-            let areas = areas.as_ref().map(|areas| self.area_pen(areas));
-            let (drawn, within) = (drawing.of_pen(pen.number), (areas, self.ours.tolerance_px));
+            let areas = self.area_pen(areas.as_ref());
+            let (drawn, within) = (drawing.of_pen(pen.number), (areas, self.within_px()));
             faults = faults.and(add_coverage(ink, &drawn, within, &mut tally));
             measuring.at(done, of)?;
         }
@@ -119,12 +119,12 @@ impl Vectorizer {
         let traced =
             Vectorized { drawing, error, beyond, bare, insides, split: None, look: None, removed, doubt };
         let unassigned = match self.algorithm {
-            Algorithm::Ours => {
+            Algorithm::Ours(_) => {
                 // A level that was chosen for one pen says nothing of several.
                 let threshold = Threshold { method: ThresholdMethod::Auto, ..self.threshold };
                 layers.unassigned(&Self { threshold, ..*self }.ink(&Gray::from(picture)))
             }
-            Algorithm::Published => None,
+            Algorithm::Published(_) => None,
         };
         Ok(VectorizedColour {
             traced,

@@ -1,7 +1,6 @@
 //! [`Vectorizer`]: the whole way from grey levels to pen strokes.
 
-use crate::areas::{Islands, Opening};
-use crate::centreline::centrelines::Centring;
+use crate::areas::Opening;
 use crate::ink::hairlines::Hairlines;
 use crate::ink::mark_sizes::MarkSizes;
 use crate::ink::pen::Pen;
@@ -10,66 +9,59 @@ use crate::raster::continuity::{Joined, join, link};
 use crate::raster::cut_at_turns::cut_at_turns;
 use crate::raster::raster_corner::{put_back, take_out};
 use crate::raster::straight_on::{GoneOn, straight_on};
-use crate::report::coverage::{AreaPen, Beyond, Faults, Index, Spots, add_coverage, with_widths};
+use crate::report::coverage::{AreaPen, Beyond, Faults, Spots, add_coverage, with_widths};
 use crate::report::covered_figures::Covered;
-use crate::stroke::Pieces;
 use crate::stroke::clip_to_picture::within;
 use crate::stroke::join_gaps::{join_gaps, without_short};
-use crate::trace::bare_ink::BareInk;
+use crate::stroke::{Bounded, Drawing, DynamicThreshold, Pieces, PxPoint, Simplify};
+use crate::trace::ours::{Ours, Prefer};
 use crate::{
-    areas::{AreaPath, AreaStyle, Areas},
-    ink::{Despeckled, Evened, Look, Split, Threshold, despeckle, smallest_mark_px, told},
-    order::{Lettering, Order},
+    ink::{Despeckled, Evened, Look, Split, Threshold, told},
     picture::{Bitmap, Figures, Gray, Pixel},
-    raster::{OrderedTracking, ThinningMethod},
+    raster::OrderedTracking,
     report::{ErrorReport, ErrorTally},
-    stroke::{Bounded, Curve, Drawing, DynamicThreshold, PxPoint, Simplify},
     trace::{Doubt, SheetErrors, VectorizeError, doubt::Dirt},
 };
 use std::collections::BTreeSet;
 
-/// Which vectorization.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+/// Which vectorization, with the settings that it alone has.
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
 pub enum Algorithm {
     /// Ordered tracking, pre-elimination and [`DynamicThreshold`], drawn in tracking order: as published.
-    Published,
+    Published(Published),
     /// The middle of each line, its crossings and corners where they are, [`Bounded`], strokes ordered for
-    /// little travel. Drawings of lines one pixel wide are tracked pixel by pixel: there the raster is the
-    /// line. Those with grey rims are centred as wider ones are.
-    #[default]
-    Ours,
+    /// little travel.
+    Ours(Ours),
 }
 
-/// What ours draws of the ink.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
-pub enum Mode {
-    /// A stroke down the middle of each line; what is far wider than the lines is outlined.
-    #[default]
-    Centreline,
-    /// The outlines of everything. What a pen of [`Areas::pen_px`] cannot go around inside, as lines up to
-    /// its width, is drawn along its middle.
-    Outline,
-    /// As `Centreline`, and areas begin already at three times the width of the lines; they are drawn in
-    /// [`Vectorizer::areas`]' style.
-    Mixed,
+impl Default for Algorithm {
+    /// Ours, to half a pixel.
+    fn default() -> Self {
+        Self::Ours(Ours::default())
+    }
 }
 
-/// What ours gives up where one stroke a line leaves ink bare: lines that run into one, corners, counters
-/// that are filled.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
-pub enum Prefer {
-    /// No stroke is added: fewest strokes, and what is bare by more than the tolerance is told by the errors.
-    Strokes,
-    /// Strokes are added where lines run into one, and wherever else more than spots are bare and the pen
-    /// fits into the ink. A spot is half a pixel off, which the raster leaves open, or no larger than what a
-    /// round pen leaves bare in the corner of a square.
-    #[default]
-    Both,
-    /// Strokes are added for spots too.
-    Ink,
+/// Settings of the published vectorization.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+#[non_exhaustive]
+pub struct Published {
+    /// Which pixels of a figure become vertices.
+    pub simplification: DynamicThreshold,
+}
+
+impl Published {
+    /// The same with another choice of vertices.
+    #[must_use]
+    pub const fn with_simplification(self, simplification: DynamicThreshold) -> Self {
+        Self { simplification }
+    }
 }
 
 /// Settings of the whole way from a picture to strokes.
@@ -83,72 +75,37 @@ pub enum Prefer {
 /// assert_eq!(traced.error.max_px, 0.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+#[non_exhaustive]
 pub struct Vectorizer {
-    /// Which vectorization.
-    pub algorithm: Algorithm,
     /// How ink is told from paper.
     pub threshold: Threshold,
-    /// How ink becomes figures: published, and ours on lines one pixel wide.
+    /// How ink becomes figures: published, and by ours on lines one pixel wide.
     pub tracking: OrderedTracking,
-    /// The published simplification.
-    pub published: DynamicThreshold,
-    /// Ours: its tolerance is the promise that nothing lies farther from the segment that replaced it: of
-    /// lines one pixel wide each pixel, of wider ones each point of the line down their middle. Marks up to
-    /// 32 px wide and high (lettering) are then drawn again as a whole, their vertices where a pen leaves the
-    /// ink that is there.
-    pub ours: Bounded,
-    /// Ours: what strokes are made of, with the same promise.
-    pub pieces: Pieces,
-    /// What ours draws.
-    pub mode: Mode,
-    /// Ours: whether ink that one stroke a line leaves bare is worth more strokes.
-    pub prefer: Prefer,
-    /// Ours: smaller marks of ink are dirt, and smaller holes in it too, px; `None` for what a pen of the
-    /// lines' width cannot have made.
-    pub smallest_mark_px: Option<u32>,
-    /// Ours: what is wider is no line but an area, px; `None` for 6 times the lines' width, in mixed mode 3
-    /// times. It is at least what the pen of [`Vectorizer::areas`] needs to find its way inside.
-    pub max_line_px: Option<u32>,
-    /// Ours: how lines are thinned.
-    pub thinning: ThinningMethod,
-    /// Ours: how areas are drawn.
-    pub areas: Areas,
-    /// Ours: strokes that go on in each other beyond a gap of so much become one, px; `None` for three widths
-    /// of the lines where strokes have grain and gaps, two in other pictures whose ink no single level tells,
-    /// and nothing in others.
-    pub gap_px: Option<f64>,
-    /// Ours: strokes shorter than this are left out, px; 0 for none.
-    pub min_stroke_px: f64,
-    /// Ours: the order of the strokes. What it leaves apart becomes one where two ends are no farther from
-    /// each other than the thinnest lines are wide.
-    pub order: Order,
-    /// Ours: rows that are worked on at a time. A measure of memory alone: it changes no result.
-    pub band_rows: u32,
+    /// Which vectorization. The default is ours.
+    pub algorithm: Algorithm,
 }
 
-impl Default for Vectorizer {
-    /// Ours to half a pixel, everything found from the picture, straight lines only, areas outlined by a pen
-    /// of one pixel.
-    fn default() -> Self {
-        Self {
-            algorithm: Algorithm::default(),
-            threshold: Threshold::default(),
-            tracking: OrderedTracking::default(),
-            published: DynamicThreshold::default(),
-            ours: Bounded::default(),
-            pieces: Pieces::default(),
-            mode: Mode::default(),
-            prefer: Prefer::default(),
-            smallest_mark_px: None,
-            max_line_px: None,
-            thinning: ThinningMethod::default(),
-            areas: Areas { style: AreaStyle::Outline, pen_px: 1.0 },
-            gap_px: None,
-            min_stroke_px: 0.0,
-            order: Order { lettering: Some(Lettering::default()), ..Order::default() },
-            band_rows: 2048,
-        }
+impl From<Algorithm> for Vectorizer {
+    fn from(algorithm: Algorithm) -> Self {
+        Self { algorithm, ..Self::default() }
+    }
+}
+
+impl From<Published> for Vectorizer {
+    fn from(published: Published) -> Self {
+        Algorithm::Published(published).into()
+    }
+}
+
+impl From<Ours> for Vectorizer {
+    fn from(ours: Ours) -> Self {
+        Algorithm::Ours(ours).into()
     }
 }
 
@@ -188,6 +145,62 @@ const GRAIN_GAP_WIDTHS: f64 = 3.0;
 const SKIP_WIDTHS: f64 = 2.0;
 
 impl Vectorizer {
+    /// The published vectorization with its published settings.
+    #[must_use]
+    pub fn published() -> Self {
+        Published::default().into()
+    }
+
+    /// The same with ink told from paper otherwise.
+    #[must_use]
+    pub const fn with_threshold(self, threshold: Threshold) -> Self {
+        Self { threshold, ..self }
+    }
+
+    /// The same with another tracking.
+    #[must_use]
+    pub const fn with_tracking(self, tracking: OrderedTracking) -> Self {
+        Self { tracking, ..self }
+    }
+
+    /// The settings of ours; `None` where the published vectorization is asked for.
+    #[must_use]
+    pub const fn ours(&self) -> Option<&Ours> {
+        match &self.algorithm {
+            Algorithm::Ours(ours) => Some(ours),
+            Algorithm::Published(_) => None,
+        }
+    }
+
+    /// The same, to be changed.
+    ///
+    /// ```
+    /// # use plotter_vector::Vectorizer;
+    /// let mut vectorizer = Vectorizer::default();
+    /// if let Some(ours) = vectorizer.ours_mut() {
+    ///     ours.tolerance_px = 1.0;
+    /// }
+    /// assert!(Vectorizer::published().ours_mut().is_none());
+    /// ```
+    #[must_use]
+    pub const fn ours_mut(&mut self) -> Option<&mut Ours> {
+        match &mut self.algorithm {
+            Algorithm::Ours(ours) => Some(ours),
+            Algorithm::Published(_) => None,
+        }
+    }
+
+    /// How far ink may be from a stroke before it counts as bare, px: the promise of ours. The published
+    /// vectorization promises nothing, so it is told by the default of that promise.
+    pub(crate) fn within_px(&self) -> f64 {
+        self.ours().map_or(Bounded::default().tolerance_px, |ours| ours.tolerance_px)
+    }
+
+    /// The pen that draws areas.
+    pub(crate) fn area_pen<'a>(&self, areas: Option<&'a Opening>) -> Option<AreaPen<'a>> {
+        self.ours().zip(areas).map(|(ours, areas)| ours.area_pen(areas))
+    }
+
     /// Vectorizes a picture. An empty sheet (one level, no contrast, no pixels) gives an empty drawing.
     ///
     /// # Errors
@@ -218,11 +231,18 @@ impl Vectorizer {
     /// A picture that was found uneven as if its ink were black, and the settings that trace it.
     pub(crate) fn evened(&self, gray: &Gray) -> Option<(Evened, Self)> {
         let (evened, threshold) = self.threshold.evened(gray)?;
-        // The rims of what a camera or a pencil made are ragged: ink that is bare there is worth no stroke.
-        let prefer = if self.prefer == Prefer::Both { Prefer::Strokes } else { self.prefer };
-        let widths = if evened.look.broken { GRAIN_GAP_WIDTHS } else { SKIP_WIDTHS };
-        let gap_px = self.gap_px.or(Some(widths * f64::from(evened.look.line_px)));
-        Some((evened, Self { threshold, prefer, gap_px, ..*self }))
+        let algorithm = match self.algorithm {
+            Algorithm::Ours(ours) => {
+                // The rims of what a camera or a pencil made are ragged: ink that is bare there is worth no
+                // stroke.
+                let prefer = if ours.prefer == Prefer::Both { Prefer::Strokes } else { ours.prefer };
+                let widths = if evened.look.broken { GRAIN_GAP_WIDTHS } else { SKIP_WIDTHS };
+                let gap_px = ours.gap_px.or(Some(widths * f64::from(evened.look.line_px)));
+                Algorithm::Ours(Ours { prefer, gap_px, ..ours })
+            }
+            published @ Algorithm::Published(_) => published,
+        };
+        Some((evened, Self { threshold, algorithm, ..*self }))
     }
 
     /// The same settings with one level for all of the picture.
@@ -242,8 +262,8 @@ impl Vectorizer {
     #[must_use]
     pub fn ink(&self, gray: &Gray) -> Bitmap {
         let (mut ink, _) = self.threshold.apply(gray);
-        if self.algorithm == Algorithm::Ours {
-            self.clean(&mut ink);
+        if let Some(ours) = self.ours() {
+            ours.clean(&mut ink);
         }
         ink
     }
@@ -287,11 +307,9 @@ impl Vectorizer {
         removed: Despeckled,
         left_out: usize,
     ) -> Result<Option<Doubt>, VectorizeError> {
-        if self.algorithm == Algorithm::Published || drawing.strokes().len() == 0 {
-            return Ok(None);
-        }
+        let Some(ours) = self.ours().filter(|_| drawing.strokes().len() > 0) else { return Ok(None) };
         let line_px = Pen::of(ink).width_px;
-        let dirt = Dirt { least_px: self.smallest_mark_px(line_px), removed, left_out };
+        let dirt = Dirt { least_px: ours.smallest_mark_px(line_px), removed, left_out };
         Doubt::of(drawing, line_px, dirt, || Ok(MarkSizes::of(ink)))
     }
 
@@ -304,15 +322,13 @@ impl Vectorizer {
         ink: &Bitmap,
         areas: Option<&Opening>,
     ) -> (Drawing, Option<SheetErrors>) {
-        if !self.adds_strokes() {
-            return (drawing, errors);
-        }
-        let is_kept = errors.as_ref().is_some_and(|errors| errors.report.max_px <= self.ours.tolerance_px);
+        let Some(ours) = self.ours().filter(|ours| ours.adds_strokes()) else { return (drawing, errors) };
+        let is_kept = errors.as_ref().is_some_and(|errors| errors.report.max_px <= ours.tolerance_px);
         let mut added = Vec::new();
         if !is_kept {
-            let drawn = with_widths(ink, &drawing, areas.map(|areas| self.area_pen(areas)));
+            let drawn = with_widths(ink, &drawing, areas.map(|areas| ours.area_pen(areas)));
             let lines = areas.map(|areas| areas.split_of(ink).thin);
-            added = self.bare_ink(&drawn).strokes(ink, lines.as_ref().unwrap_or(ink), 0, &(0..ink.height()));
+            added = ours.bare_ink(&drawn).strokes(ink, lines.as_ref().unwrap_or(ink), 0, &(0..ink.height()));
         }
         let errors = errors.filter(|_| added.is_empty());
         added.into_iter().for_each(|stroke| drawing.push_curve(1, within(stroke, ink.width(), ink.height())));
@@ -329,34 +345,21 @@ impl Vectorizer {
         errors: Option<SheetErrors>,
         thinnest_px: u32,
     ) -> (Drawing, Option<SheetErrors>) {
-        if self.algorithm == Algorithm::Published {
-            return (drawing, errors);
-        }
-        if let Some(gap_px) = self.gap_px.filter(|gap_px| *gap_px > 0.0) {
+        let Some(ours) = self.ours() else { return (drawing, errors) };
+        if let Some(gap_px) = ours.gap_px.filter(|gap_px| *gap_px > 0.0) {
             drawing = join_gaps(drawing, gap_px);
         }
         let mut errors = errors;
-        if self.min_stroke_px > 0.0 {
-            drawing = without_short(drawing, self.min_stroke_px);
+        if ours.min_stroke_px > 0.0 {
+            drawing = without_short(drawing, ours.min_stroke_px);
             errors = None;
         }
         let ordered = if thinnest_px > 1 {
-            self.order.apply_to_ink(&drawing, f64::from(thinnest_px))
+            ours.order.apply_to_ink(&drawing, f64::from(thinnest_px))
         } else {
-            self.order.apply(&drawing)
+            ours.order.apply(&drawing)
         };
         (ordered, errors)
-    }
-
-    /// Whether strokes are added for what is bare.
-    pub(crate) fn adds_strokes(&self) -> bool {
-        self.algorithm == Algorithm::Ours && self.mode != Mode::Outline && self.prefer != Prefer::Strokes
-    }
-
-    /// What strokes leave bare.
-    pub(crate) fn bare_ink<'a>(&self, drawn: &'a Index) -> BareInk<'a> {
-        let spots = self.prefer == Prefer::Ink;
-        BareInk { drawn, within_px: self.ours.tolerance_px, pieces: self.pieces, spots }
     }
 
     /// The errors of a drawing: what is known of lines one pixel wide from their figures, or measured.
@@ -369,8 +372,8 @@ impl Vectorizer {
     ) -> SheetErrors {
         match known {
             Some(errors) => {
-                let within_px = self.ours.tolerance_px;
-                let has_bare = self.algorithm == Algorithm::Ours && errors.report.max_px > within_px;
+                let within_px = self.within_px();
+                let has_bare = self.ours().is_some() && errors.report.max_px > within_px;
                 let Faults { beyond, bare, insides } =
                     Faults::of_hairlines(ink, drawing, within_px, has_bare);
                 SheetErrors { beyond, bare, insides, ..errors }
@@ -382,14 +385,9 @@ impl Vectorizer {
     /// The errors of a drawing, with the areas that were told from lines.
     fn errors(&self, ink: &Bitmap, drawing: &Drawing, areas: Option<&Opening>) -> SheetErrors {
         let mut tally = ErrorTally::default();
-        let within = (areas.map(|areas| self.area_pen(areas)), self.ours.tolerance_px);
+        let within = (self.area_pen(areas), self.within_px());
         let Faults { beyond, bare, insides } = add_coverage(ink, drawing, within, &mut tally);
         SheetErrors { report: tally.report(), worst: tally.worst(), beyond, bare, insides }
-    }
-
-    /// The pen that draws areas.
-    pub(crate) fn area_pen<'a>(&self, opening: &'a Opening) -> AreaPen<'a> {
-        AreaPen { opening, pen_px: self.areas.pen_px, is_raster: false }
     }
 
     /// The strokes as they are found; takes the dirt out of `ink`.
@@ -398,133 +396,39 @@ impl Vectorizer {
         ink: &mut Bitmap,
         grey: Option<(&Gray, bool)>,
     ) -> Result<Unordered, VectorizeError> {
-        if self.algorithm == Algorithm::Published {
-            let (drawing, errors) = self.published(ink)?;
-            let removed = Despeckled::default();
-            return Ok(Unordered { drawing, errors: Some(errors), areas: None, thinnest_px: 1, removed });
-        }
-        self.check()?;
+        let ours = match &self.algorithm {
+            Algorithm::Ours(ours) => ours,
+            Algorithm::Published(published) => {
+                let (drawing, errors) = self.as_published(published, ink)?;
+                let removed = Despeckled::default();
+                return Ok(Unordered { drawing, errors: Some(errors), areas: None, thinnest_px: 1, removed });
+            }
+        };
+        ours.check()?;
         let ink_pixels = ink.count();
-        let (pen, removed) = self.clean(ink);
-        if self.keeps_pixels(pen, || grey.is_some_and(|(gray, _)| has_rims(gray, ink_pixels))) {
-            let (drawing, errors) = self.tracked(ink, pen.hairlines)?;
+        let (pen, removed) = ours.clean(ink);
+        if ours.keeps_pixels(pen, || grey.is_some_and(|(gray, _)| has_rims(gray, ink_pixels))) {
+            let (drawing, errors) = self.tracked(ours, ink, pen.hairlines)?;
             // Of what is not straight the errors are not known from the figures.
             let errors = drawing.is_straight().then_some(errors);
             return Ok(Unordered { drawing, errors, areas: None, thinnest_px: 1, removed });
         }
-        let strokes = self.strokes(ink, grey, pen)?;
+        let strokes = ours.strokes(ink, grey, pen)?;
         let mut drawing = Drawing::new(ink.width(), ink.height());
         for stroke in strokes {
             drawing.push_curve(1, within(stroke, ink.width(), ink.height()));
         }
-        let areas = Some(self.opening(pen));
+        let areas = Some(ours.opening(pen));
         Ok(Unordered { drawing, errors: None, areas, thinnest_px: pen.thinnest_px, removed })
     }
 
-    /// Takes the dirt out of ink; the pen that drew it, and what was taken.
-    fn clean(&self, ink: &mut Bitmap) -> (Pen, Despeckled) {
-        let pen = Pen::of(ink);
-        (pen, despeckle(ink, self.smallest_mark_px(pen.width_px)))
-    }
-
-    /// Whether the pixels of the ink are followed as they are: lines one pixel wide. Where these are is
-    /// better known of grey rims.
-    pub(crate) fn keeps_pixels(&self, pen: Pen, has_rims: impl Fn() -> bool) -> bool {
-        let is_raster = pen.width_px <= 1 && pen.hairlines != Hairlines::Pen;
-        is_raster && self.mode != Mode::Outline && !has_rims()
-    }
-
-    /// Pixels of the smallest mark of ours that is no dirt.
-    pub(crate) fn smallest_mark_px(&self, pen_px: u32) -> u32 {
-        self.smallest_mark_px.unwrap_or(smallest_mark_px(pen_px))
-    }
-
-    /// The strokes of lines and areas.
-    fn strokes(
-        &self,
-        ink: &Bitmap,
-        grey: Option<(&Gray, bool)>,
-        pen: Pen,
-    ) -> Result<Vec<Curve>, VectorizeError> {
-        let split = self.opening(pen).split_of(ink);
-        let centring = self.centring_of(pen);
-        let mut strokes = centring.strokes(&split.thin, grey);
-        let areas = &split.thick;
-        let mut islands = Islands::new(areas.width());
-        for y in 0..areas.height() {
-            if let Some((first_row, areas)) = islands.push(areas.row(y)) {
-                strokes.extend(self.area_strokes(first_row, &areas)?);
-            }
-        }
-        if let Some((first_row, areas)) = islands.finish() {
-            strokes.extend(self.area_strokes(first_row, &areas)?);
-        }
-        Ok(strokes)
-    }
-
-    /// Whether ours can be done as asked.
-    pub(crate) fn check(&self) -> Result<(), VectorizeError> {
-        let tolerance_px = self.ours.tolerance_px;
-        if !(tolerance_px > 0.0 && tolerance_px.is_finite()) {
-            return Err(VectorizeError::Tolerance { tolerance_px });
-        }
-        self.areas.paths(&Bitmap::empty()).map(drop).map_err(VectorizeError::Areas)
-    }
-
-    /// Widest line, px.
-    pub(crate) fn max_line_px(&self, pen_px: u32) -> u32 {
-        let lines = self.max_line_px.unwrap_or(match self.mode {
-            Mode::Mixed => (3 * pen_px).max(6),
-            Mode::Centreline | Mode::Outline => (6 * pen_px).max(12),
-        });
-        lines.max(self.areas.narrowest_px())
-    }
-
-    /// What tells areas from lines.
-    pub(crate) fn opening(&self, pen: Pen) -> Opening {
-        let outlines_all = self.mode == Mode::Outline || pen.is_silhouette && self.max_line_px.is_none();
-        if outlines_all {
-            Opening::of_pen(self.areas.pen_px)
-        } else {
-            Opening::of_drawing(self.max_line_px(pen.width_px), pen.width_px)
-        }
-    }
-
-    /// How lines of a pen become strokes.
-    pub(crate) fn centring_of(&self, pen: Pen) -> Centring {
-        let centring = self.centring(self.max_line_px(pen.width_px));
-        Centring { redraw: true, hairlines: pen.hairlines, ..centring }
-    }
-
-    /// How lines become strokes.
-    pub(crate) fn centring(&self, max_line_px: u32) -> Centring {
-        // The promise holds for the middle of the ink; part of it goes for the jumps of its edges from pixel
-        // to pixel.
-        let bounded = Bounded { tolerance_px: 0.85 * self.ours.tolerance_px };
-        // What is left of an area's rim may be as wide again.
-        let centring = Centring::new(self.thinning, max_line_px, bounded, self.band_rows);
-        Centring { pieces: self.pieces, ..centring }
-    }
-
-    /// The strokes of the areas in some rows, of which the first is row `first_row` of the picture.
-    pub(crate) fn area_strokes(&self, first_row: u32, areas: &Bitmap) -> Result<Vec<Curve>, VectorizeError> {
-        let paths = self.areas.paths(areas).map_err(VectorizeError::Areas)?;
-        let top = f64::from(first_row);
-        let stroke = |path: AreaPath| {
-            let mut stroke = self.simplified(&path.sites, path.closed);
-            stroke.move_down(top);
-            stroke
-        };
-        Ok(paths.map(stroke).collect())
-    }
-
-    /// A stroke through sites, by ours.
-    fn simplified(&self, sites: &[PxPoint], closed: bool) -> Curve {
-        self.ours.stroke(sites, closed, self.pieces)
-    }
-
     /// Ours for lines one pixel wide.
-    fn tracked(&self, ink: &Bitmap, hairlines: Hairlines) -> Result<(Drawing, SheetErrors), VectorizeError> {
+    fn tracked(
+        &self,
+        ours: &Ours,
+        ink: &Bitmap,
+        hairlines: Hairlines,
+    ) -> Result<(Drawing, SheetErrors), VectorizeError> {
         let mut bare = ink.clone();
         let corners = if hairlines == Hairlines::Stairs { take_out(&mut bare) } else { Vec::new() };
         let figures = put_back(&link(&self.figures(&bare)?), &corners, ink.width(), ink.height());
@@ -540,32 +444,22 @@ impl Vectorizer {
         drop(linked);
         let lent = |index: usize| borrowed.get(index).copied().unwrap_or_default();
         // Arcs and curves do not pass where the straight segments do.
-        let covered_px = (self.pieces == Pieces::Lines).then_some(self.ours.tolerance_px);
-        let (straight, errors) = simplify(ink, &figures, lent, &shared, &self.ours, covered_px);
-        let drawing = match self.pieces {
+        let covered_px = (ours.pieces == Pieces::Lines).then_some(ours.tolerance_px);
+        let (straight, errors) = simplify(ink, &figures, lent, &shared, &ours.bounded(), covered_px);
+        let drawing = match ours.pieces {
             Pieces::Lines => straight,
-            _ => self.bent(&figures, &straight),
+            _ => ours.bent(&figures, &straight),
         };
         Ok((drawing, errors))
     }
 
-    /// The strokes of figures, with arcs or curves where they save vertices.
-    fn bent(&self, figures: &Figures, straight: &Drawing) -> Drawing {
-        let mut drawing = Drawing::new(straight.width_px(), straight.height_px());
-        // Each figure has pixels, so each has its stroke.
-        for (figure, stroke) in figures.iter().zip(straight.strokes()) {
-            let sites: Vec<PxPoint> = figure.iter().map(|pixel| PxPoint::from(*pixel)).collect();
-            let closed = sites.len() > 3 && sites.first() == sites.last();
-            let curve = self.ours.stroke(&sites, closed, self.pieces);
-            let curve = within(curve, straight.width_px(), straight.height_px());
-            let pays = !curve.is_straight() && curve.vertices.len() < stroke.len();
-            drawing.push_curve(1, if pays { curve } else { stroke.to_vec().into() });
-        }
-        drawing
-    }
-
-    fn published(&self, ink: &Bitmap) -> Result<(Drawing, SheetErrors), VectorizeError> {
-        Ok(simplify(ink, &self.figures(ink)?, |_| (false, false), &Bitmap::empty(), &self.published, None))
+    fn as_published(
+        &self,
+        published: &Published,
+        ink: &Bitmap,
+    ) -> Result<(Drawing, SheetErrors), VectorizeError> {
+        let simplification = &published.simplification;
+        Ok(simplify(ink, &self.figures(ink)?, |_| (false, false), &Bitmap::empty(), simplification, None))
     }
 
     fn figures(&self, ink: &Bitmap) -> Result<Figures, VectorizeError> {
@@ -629,20 +523,15 @@ fn simplify(
 mod tests {
     use super::*;
 
-    fn with(algorithm: Algorithm, tolerance_px: f64) -> Vectorizer {
-        Vectorizer { algorithm, ours: Bounded { tolerance_px }, ..Vectorizer::default() }
-    }
-
     #[test]
-    fn a_tolerance_that_is_no_distance_is_refused_by_ours_only() {
+    fn a_tolerance_that_is_no_distance_is_refused() {
         let dot = Bitmap::from_picture("#").unwrap();
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            let error = with(Algorithm::Ours, bad).trace(&dot).unwrap_err();
+            let error = Vectorizer::from(Ours::default().with_tolerance_px(bad)).trace(&dot).unwrap_err();
             assert_eq!(
                 error.to_string(),
                 format!("tolerance: {bad} px is not a positive number; 0.5 is half a pixel")
             );
-            assert!(with(Algorithm::Published, bad).trace(&dot).is_ok());
         }
     }
 
@@ -651,9 +540,8 @@ mod tests {
         let (width, height) = (8192, 4097);
         let mut black = Bitmap::new(width, height).unwrap();
         (0..height).for_each(|y| black.row_mut(y).fill(u64::MAX));
-        let published = Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() };
         assert_eq!(
-            published.trace(&black).unwrap_err(),
+            Vectorizer::published().trace(&black).unwrap_err(),
             VectorizeError::TooMuchInk { ink_pixels: 8192 * 4097 }
         );
     }

@@ -10,7 +10,7 @@ use crate::pen_ink::{Line, ink_of};
 use crate::random::Random;
 use crate::segment_distance::segment_distance;
 use core::f64::consts::TAU;
-use plotter_vector::{Bitmap, Drawing, Pixel, Prefer, PxPoint, Vectorizer};
+use plotter_vector::{Bitmap, Drawing, Ours, Pixel, Prefer, PxPoint, Vectorizer};
 use std::collections::BTreeSet;
 
 pub(crate) const SIDE_PX: u32 = 200;
@@ -137,7 +137,7 @@ impl Bare {
 fn bare(seed: u64, pen_px: f64, prefer: Prefer) -> Bare {
     let lines = drawing(seed);
     let ink: Bitmap = ink_of(SIDE_PX, &lines, pen_px);
-    let traced = Vectorizer { prefer, ..Vectorizer::default() }.trace(&ink).unwrap();
+    let traced = Vectorizer::from(Ours::default().with_prefer(prefer)).trace(&ink).unwrap();
     // What was taken for dirt is told, and is not asked for here.
     let dirt = traced.removed.removed_marks > 0;
     let far: Vec<(Pixel, f64)> = ink.ink().map(|at| (at, distance_px(&traced.drawing, at))).collect();
@@ -217,7 +217,7 @@ fn a_needle_gets_a_stroke_at_its_blunt_end_at_most() {
             ink.set(Pixel::new(x, y), is_ink(x, y));
         }
         let strokes = |prefer| {
-            Vectorizer { prefer, ..Vectorizer::default() }.trace(&ink).unwrap().drawing.strokes().len()
+            Vectorizer::from(Ours::default().with_prefer(prefer)).trace(&ink).unwrap().drawing.strokes().len()
         };
         strokes(Prefer::Both) > strokes(Prefer::Strokes) + 1
     });

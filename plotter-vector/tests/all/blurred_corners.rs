@@ -23,13 +23,11 @@ fn three_lines_end_where_their_courses_meet() {
         });
         let strokes: Vec<_> = lines.iter().map(|line| (line.to_vec(), 5.0)).collect();
         let paper = Paper::drawn(200, 200, &strokes).unwrap();
-        let settings = CameraSettings {
-            width_px: 200,
-            height_px: 200,
-            rim_light: 1.0,
-            seed: seed.into(),
-            ..CameraSettings::default()
-        };
+        let settings = CameraSettings::default()
+            .with_width_px(200)
+            .with_height_px(200)
+            .with_rim_light(1.0)
+            .with_seed(seed.into());
         let window = SimulatedCamera::new(&paper, settings).window(PxPoint::new(HALF_PX, HALF_PX));
         let found = Vectorizer::default().vectorize(&window).unwrap().drawing;
         let off_px = off_px(&lines, &found);

@@ -4,7 +4,7 @@
 use crate::segment_distance;
 
 use plotter_vector::{
-    Bitmap, Drawing, Gray, Pixel, Progress, PxPoint, Vectorizer, picture::GrayRows, report::coverage,
+    Bitmap, Drawing, Gray, Ours, Pixel, Progress, PxPoint, Vectorizer, picture::GrayRows, report::coverage,
 };
 use segment_distance::segment_distance;
 
@@ -154,7 +154,7 @@ fn traced_of_levels(lines: &[Stroke], pen_px: f64) -> Drawing {
     let level = |at: u32| u8::try_from(255 - 15 * covered(at % 200, at / 200)).unwrap();
     let gray = Gray::new(200, 200, (0..200 * 200).map(level).collect()).unwrap();
     let found = Vectorizer::default().vectorize(&gray).unwrap().drawing;
-    let by_rows = Vectorizer { band_rows: 37, ..Vectorizer::default() }
+    let by_rows = Vectorizer::from(Ours::default().with_band_rows(37))
         .vectorize_rows(&mut GrayRows::new(gray), &mut Progress::silent());
     assert_eq!(by_rows.unwrap().drawing, found);
     found

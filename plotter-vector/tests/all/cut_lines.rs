@@ -148,8 +148,11 @@ fn lines_go_straight_through_up_to_the_rim_that_cuts_them() {
         let side = (SIDE + 2.0 * MARGIN) as u32;
         let paper = Paper::drawn(side, side, &strokes).unwrap();
         let window = |blur_px: f64, noise_levels: f64| {
-            let settings =
-                CameraSettings { blur_px, noise_levels, rim_light: 1.0, seed, ..CameraSettings::default() };
+            let settings = CameraSettings::default()
+                .with_blur_px(blur_px)
+                .with_noise_levels(noise_levels)
+                .with_rim_light(1.0)
+                .with_seed(seed);
             SimulatedCamera::new(&paper, settings)
                 .window(PxPoint::new(f64::from(side) / 2.0, f64::from(side) / 2.0))
         };

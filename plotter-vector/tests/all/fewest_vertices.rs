@@ -6,9 +6,7 @@
 //! places.
 
 use crate::figure::Figure;
-use plotter_vector::{
-    Drawing, Gray, Order, Pixel, PxPoint, Vectorizer, decode, order::OrderEffort, stroke::Bounded,
-};
+use plotter_vector::{Drawing, Gray, Ours, Pixel, PxPoint, Vectorizer, decode, order::OrderEffort};
 
 /// What the bound may be missed by, px: the tracer adds 1e-9, so that a pixel exactly on the bound passes.
 /// What is left out must be within the bound for sure.
@@ -131,9 +129,10 @@ fn hardly_a_vertex_of_a_whole_drawing_can_be_left_out_or_be_one_with_the_next() 
         let Some(gray) = picture(name) else { return };
         let ink = Ink::of(&gray);
         for bound_px in [0.5, 0.75, 1.0] {
-            let vectorizer = Vectorizer { ours: Bounded { tolerance_px: bound_px }, ..Vectorizer::default() };
-            let as_found =
-                Vectorizer { order: Order { effort: OrderEffort::None, ..vectorizer.order }, ..vectorizer };
+            let ours = Ours::default().with_tolerance_px(bound_px);
+            let vectorizer = Vectorizer::from(ours);
+            let as_found = ours.with_order(ours.order.with_effort(OrderEffort::None));
+            let as_found = Vectorizer::from(as_found);
             let [_, left_out_before, pairs_before] =
                 too_many(&ink, &as_found.vectorize(&gray).unwrap().drawing, bound_px);
             let drawing = vectorizer.vectorize(&gray).unwrap().drawing;

@@ -31,12 +31,10 @@ fn drawings_of_many_kinds() {
             std::fs::write(format!("{folder}/{}.pgm", drawing.name.replace(' ', "-")), file).unwrap();
         }
         let far = PxPoint::new(f64::from(width), f64::from(height));
-        let settings = MappingSettings {
-            area: Some([PxPoint::new(0.0, 0.0), far]),
-            max_windows: 20_000,
-            ..MappingSettings::default()
-        };
-        let camera = CameraSettings { seed: 1, ..CameraSettings::default() };
+        let settings = MappingSettings::default()
+            .with_area(Some([PxPoint::new(0.0, 0.0), far]))
+            .with_max_windows(20_000);
+        let camera = CameraSettings::default().with_seed(1);
         let error = TableError { random_px, play_px: 3.0 * random_px, seed: 1 };
         let lines: Vec<_> = drawing.strokes.iter().map(|(line, _)| line.clone()).collect();
         let start = PxPoint::new(0.5 * far.x, 0.5 * far.y);

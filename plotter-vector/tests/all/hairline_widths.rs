@@ -16,7 +16,7 @@ use crate::random;
 use crate::segment_distance;
 
 use pen_ink::{Line, ink_of};
-use plotter_vector::{Drawing, Progress, PxPoint, Vectorized, Vectorizer, picture::BitmapRows};
+use plotter_vector::{Drawing, Ours, Progress, PxPoint, Vectorized, Vectorizer, picture::BitmapRows};
 use random::Random;
 use segment_distance::segment_distance;
 
@@ -168,7 +168,7 @@ fn thin_lines_are_the_same_strokes_by_rows() {
         let ink = ink_of(SIDE_PX, &lines, 1.4);
         let whole = Vectorizer::default().trace(&ink).unwrap().drawing;
         for band_rows in [40, 130] {
-            let vectorizer = Vectorizer { band_rows, ..Vectorizer::default() };
+            let vectorizer = Vectorizer::from(Ours::default().with_band_rows(band_rows));
             let sheet =
                 vectorizer.vectorize_rows(&mut BitmapRows::new(&ink), &mut Progress::silent()).unwrap();
             assert_eq!(sheet.drawing, whole, "{band_rows}");

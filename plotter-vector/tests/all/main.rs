@@ -33,6 +33,8 @@ mod layers;
 mod level_lines;
 mod line_ends;
 mod lines;
+#[cfg(feature = "toml")]
+mod machine_sections;
 #[cfg(feature = "svg-text")]
 mod made_font;
 mod marks_on_lines;

@@ -4,7 +4,7 @@
 //! Both get the same strokes, as they are found; the way between what each of the two makes of them is
 //! measured here.
 
-use plotter_vector::{Drawing, Order, PxPoint, Vectorizer, decode, order::OrderEffort};
+use plotter_vector::{Drawing, Order, Ours, PxPoint, Vectorizer, decode, order::OrderEffort};
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
@@ -91,8 +91,8 @@ fn the_pen_travels_no_farther_than_by_vpypes_two_commands() {
         };
         let gray = decode(&picture).unwrap();
         let by = |effort| {
-            let order = Order { effort, ..Order::default() };
-            strokes_of(&Vectorizer { order, ..Vectorizer::default() }.vectorize(&gray).unwrap().drawing)
+            let order = Order::default().with_effort(effort);
+            strokes_of(&Vectorizer::from(Ours::default().with_order(order)).vectorize(&gray).unwrap().drawing)
         };
         let (as_found, ours) = (by(OrderEffort::None), by(OrderEffort::Best));
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));

@@ -29,7 +29,7 @@ fn ordered(count: u32) -> (f64, f64) {
     let drawing = lines(count);
     let (strokes, travel_mm) = (drawing.strokes.len(), drawing.travel_mm());
     let start = Instant::now();
-    let order = Order { effort: OrderEffort::Fast, merge_gap_px: 0.0, ..Order::default() };
+    let order = Order::default().with_effort(OrderEffort::Fast).with_merge_gap_px(0.0);
     let ordered = order.apply_to(drawing);
     let seconds = start.elapsed().as_secs_f64();
     assert_eq!(ordered.strokes.len(), strokes);

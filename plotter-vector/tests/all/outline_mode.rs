@@ -4,7 +4,7 @@
 use crate::segment_distance;
 
 use plotter_vector::{
-    Bitmap, Drawing, Mode, Pixel, Progress, PxPoint, Vectorizer,
+    Bitmap, Drawing, Mode, Ours, Pixel, Progress, PxPoint, Vectorizer,
     areas::{AreaStyle, Areas},
     picture::BitmapRows,
 };
@@ -40,9 +40,9 @@ fn sheet() -> Bitmap {
     ink
 }
 
-fn outlined(pen_px: f64) -> Vectorizer {
-    let areas = Areas { style: AreaStyle::Outline, pen_px };
-    Vectorizer { mode: Mode::Outline, areas, ..Vectorizer::default() }
+fn outlined(pen_px: f64) -> Ours {
+    let areas = Areas::default().with_style(AreaStyle::Outline).with_pen_px(pen_px);
+    Ours::default().with_mode(Mode::Outline).with_areas(areas)
 }
 
 /// Distance of a pixel from the nearest stroke, px.
@@ -60,7 +60,7 @@ fn distance(drawing: &Drawing, pixel: Pixel) -> f64 {
 fn every_pixel_of_a_line_is_near_a_stroke() {
     let ink = sheet();
     for pen_px in [1.0, 3.0] {
-        let traced = outlined(pen_px).trace(&ink).unwrap();
+        let traced = Vectorizer::from(outlined(pen_px)).trace(&ink).unwrap();
         let lines = pixels(CELL * WIDTHS_PX.len() as u32, ink.height()).filter(|pixel| ink.get(*pixel));
         for pixel in lines {
             let width_px = WIDTHS_PX[(pixel.x / CELL) as usize];
@@ -72,7 +72,7 @@ fn every_pixel_of_a_line_is_near_a_stroke() {
 
 #[test]
 fn a_square_is_its_outline_and_a_thin_line_one_stroke() {
-    let traced = outlined(1.0).trace(&sheet()).unwrap();
+    let traced = Vectorizer::from(outlined(1.0)).trace(&sheet()).unwrap();
     let in_field = |column: u32, row: u32| {
         let own = |at: &PxPoint| (at.x as u32 / CELL, at.y as u32 / CELL) == (column, row);
         traced.drawing.strokes().filter(|stroke| stroke.iter().all(own)).collect::<Vec<_>>()
@@ -95,9 +95,9 @@ fn a_square_is_its_outline_and_a_thin_line_one_stroke() {
 fn bands_change_nothing() {
     let ink = sheet();
     for pen_px in [0.0, 1.0, 3.0] {
-        let whole = outlined(pen_px).trace(&ink).unwrap().drawing;
+        let whole = Vectorizer::from(outlined(pen_px)).trace(&ink).unwrap().drawing;
         for band_rows in [7, 64, 2048] {
-            let settings = Vectorizer { band_rows, ..outlined(pen_px) };
+            let settings = Vectorizer::from(outlined(pen_px).with_band_rows(band_rows));
             let sheet = settings.vectorize_rows(&mut BitmapRows::new(&ink), &mut Progress::silent()).unwrap();
             assert!(sheet.drawing == whole, "{band_rows} rows, pen {pen_px}");
         }
@@ -116,9 +116,10 @@ fn line_and_bar(bar_px: u32) -> Bitmap {
 #[test]
 fn a_bar_four_times_as_wide_as_the_lines_is_an_area_where_both_are_mixed() {
     let closed = |mode, bar_px| {
-        let areas = Areas { style: AreaStyle::Outline, pen_px: 1.0 };
-        let traced =
-            Vectorizer { mode, areas, ..Vectorizer::default() }.trace(&line_and_bar(bar_px)).unwrap();
+        let areas = Areas::default().with_style(AreaStyle::Outline).with_pen_px(1.0);
+        let traced = Vectorizer::from(Ours::default().with_mode(mode).with_areas(areas))
+            .trace(&line_and_bar(bar_px))
+            .unwrap();
         let drawing = traced.drawing;
         assert_eq!(drawing.strokes().len(), 2);
         drawing.strokes().filter(|stroke| stroke.first() == stroke.last()).count()
@@ -130,9 +131,10 @@ fn a_bar_four_times_as_wide_as_the_lines_is_an_area_where_both_are_mixed() {
 #[test]
 fn what_is_too_narrow_for_a_wide_pen_is_followed() {
     // Round a bar of 16 px a pen of 30 px finds no way inside; nothing of it is lost.
-    let areas = Areas { style: AreaStyle::Outline, pen_px: 30.0 };
-    let traced =
-        Vectorizer { mode: Mode::Mixed, areas, ..Vectorizer::default() }.trace(&line_and_bar(16)).unwrap();
+    let areas = Areas::default().with_style(AreaStyle::Outline).with_pen_px(30.0);
+    let traced = Vectorizer::from(Ours::default().with_mode(Mode::Mixed).with_areas(areas))
+        .trace(&line_and_bar(16))
+        .unwrap();
     let middle: Vec<f64> = traced.drawing.strokes().map(|stroke| stroke[0].y).collect();
     assert!(middle.len() == 2 && middle.iter().any(|y| (y - 58.0).abs() < 0.5), "{middle:?}");
 }

@@ -14,7 +14,7 @@ use core::f64::consts::TAU;
 use frechet::{some_start_is_within, within};
 use lines::{arcs_and_lines, ellipse, random, sampled, sine, spiral, wild};
 use plotter_vector::{
-    Bitmap, Curve, Drawing, Order, Pixel, PxPoint, Vectorizer,
+    Bitmap, Curve, Drawing, Order, Ours, Pixel, PxPoint, Vectorizer,
     order::OrderEffort,
     stroke::{Bounded, Pieces},
 };
@@ -27,7 +27,7 @@ const ROUNDING_PX: f64 = 1e-7;
 const CHORDS_PX: f64 = 1e-3;
 
 fn bounded(tolerance_px: f64) -> Bounded {
-    Bounded { tolerance_px }
+    Bounded::default().with_tolerance_px(tolerance_px)
 }
 
 /// The sites of a circle, about one a pixel, each off by up to so much in x and in y.
@@ -112,7 +112,7 @@ proptest! {
             let bulges = places.iter().map(|(.., bulge)| *bulge).collect();
             drawing.push_curve(*pen, Curve { vertices, bulges, ..Curve::default() });
         }
-        let order = Order { effort, merge_gap_px: 0.0, ..Order::default() };
+        let order = Order::default().with_effort(effort).with_merge_gap_px(0.0);
         let ordered = order.apply(&drawing);
         prop_assert_eq!(pieces(&unsplit(&ordered, &drawing)), pieces(&drawing));
         prop_assert!((ordered.pen_down_px() - drawing.pen_down_px()).abs() < 1e-6);
@@ -164,7 +164,7 @@ fn a_drawn_circle_comes_out_as_one() {
     for (radius, width_px) in [(20.3, 3.0), (60.4, 3.0), (77.7, 5.0)] {
         let ink = picture(200, |x, y| (x - 100.2).hypot(y - 99.6) - radius, width_px);
         let drawing =
-            Vectorizer { pieces: Pieces::Arcs, ..Vectorizer::default() }.trace(&ink).unwrap().drawing;
+            Vectorizer::from(Ours::default().with_pieces(Pieces::Arcs)).trace(&ink).unwrap().drawing;
         assert_eq!(drawing.strokes().len(), 1, "{radius} {width_px}");
         let (centre, found) = drawing.curve(0).circle().unwrap();
         assert!(centre.distance(PxPoint::new(100.2, 99.6)) < 0.1 && (found - radius).abs() < 0.1, "{found}");
@@ -185,7 +185,7 @@ fn lines_one_pixel_wide_get_arcs_where_they_save_vertices() {
             }
         }
     }
-    let arcs = Vectorizer { pieces: Pieces::Arcs, ..Vectorizer::default() }.trace(&ink).unwrap();
+    let arcs = Vectorizer::from(Ours::default().with_pieces(Pieces::Arcs)).trace(&ink).unwrap();
     let straight = Vectorizer::default().trace(&ink).unwrap();
     // The centres of the pixels are up to half a pixel off the circle: hardly one circle holds them all.
     let (few, many) = (arcs.drawing.vertices(), straight.drawing.vertices());

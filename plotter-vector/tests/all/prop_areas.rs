@@ -185,7 +185,14 @@ fn segments(path: &AreaPath) -> Vec<(PxPoint, PxPoint)> {
 fn hatches() -> impl Strategy<Value = (Hatch, f64)> {
     (3.0..9.0_f64, 0.5..=1.0_f64, -7.0..7.0_f64, any::<bool>(), prop_oneof![Just(0.0), 5.0..200.0_f64])
         .prop_map(|(pen_px, share, angle_rad, cross, max_join_px)| {
-            (Hatch { pitch_px: pen_px * share, angle_rad, cross, max_join_px }, pen_px)
+            (
+                Hatch::default()
+                    .with_pitch_px(pen_px * share)
+                    .with_angle_rad(angle_rad)
+                    .with_cross(cross)
+                    .with_max_join_px(max_join_px),
+                pen_px,
+            )
         })
 }
 
@@ -194,7 +201,7 @@ proptest! {
 
     #[test]
     fn hatching_stays_inside(ink in drawings(70, 60, 40.0), (hatch, pen_px) in hatches()) {
-        let areas = Areas { style: AreaStyle::Hatch(hatch), pen_px };
+        let areas = Areas::default().with_style(AreaStyle::Hatch(hatch)).with_pen_px(pen_px);
         for path in areas.paths(&ink).unwrap() {
             for (from, to) in segments(&path) {
                 // A straight line is looked at every half pixel.
@@ -214,7 +221,7 @@ proptest! {
 
     #[test]
     fn hatching_covers_where_the_pen_can_be(ink in drawings(70, 60, 40.0), (hatch, pen_px) in hatches()) {
-        let areas = Areas { style: AreaStyle::Hatch(hatch), pen_px };
+        let areas = Areas::default().with_style(AreaStyle::Hatch(hatch)).with_pen_px(pen_px);
         let drawn: Vec<_> = areas.paths(&ink).unwrap().flat_map(|path| segments(&path)).collect();
         for pixel in ink.ink().filter(|pixel| nearest_paper(&ink, (*pixel).into()) > pen_px / 2.0 + 0.5) {
             let nearest = drawn.iter().map(|(from, to)| segment_distance(pixel.into(), *from, *to));
@@ -228,7 +235,7 @@ proptest! {
         // What a pen can reach at all: within half its width of a place where its centre may be.
         let centres: Vec<PxPoint> = ink.ink().map(PxPoint::from)
             .filter(|at| nearest_paper(&ink, *at) > pen_px / 2.0 + 0.5).collect();
-        let areas = Areas { style: AreaStyle::OutlineAndHatch(hatch), pen_px };
+        let areas = Areas::default().with_style(AreaStyle::OutlineAndHatch(hatch)).with_pen_px(pen_px);
         let drawn: Vec<_> = areas.paths(&ink).unwrap().flat_map(|path| segments(&path)).collect();
         for pixel in ink.ink() {
             let at = PxPoint::from(pixel);
@@ -246,9 +253,9 @@ proptest! {
         (hatch, pen_px) in hatches(),
     ) {
         // A pitch above the pen's width: nothing but lines and joins.
-        let open = Hatch { pitch_px: pen_px * 1.3, cross: false, ..hatch };
+        let open = hatch.with_pitch_px(pen_px * 1.3).with_cross(false);
         let straight = |max_join_px| {
-            let areas = Areas { style: AreaStyle::Hatch(Hatch { max_join_px, ..open }), pen_px };
+            let areas = Areas::default().with_style(AreaStyle::Hatch(open.with_max_join_px(max_join_px))).with_pen_px(pen_px);
             areas.paths(&ink).unwrap().collect::<Vec<_>>()
         };
         let mut lines: Vec<_> = straight(0.0).iter().map(|path| ends(&path.sites[0], &path.sites[1])).collect();

@@ -90,7 +90,7 @@ proptest! {
     #[test]
     fn no_polyline_within_the_tolerance_is_better(walk in walks(13), tolerance_px in tolerances()) {
         prop_assume!(walk.len() > 1);
-        let kept = Bounded { tolerance_px }.keep(&walk);
+        let kept = Bounded::default().with_tolerance_px(tolerance_px).keep(&walk);
         let squares: f64 =
             kept.windows(2).map(|pair| segment_cost(&walk, pair[0], pair[1], tolerance_px).unwrap()).sum();
         let (segments, least) = exhaustive(&walk, tolerance_px);
@@ -102,14 +102,14 @@ proptest! {
 proptest! {
     #[test]
     fn vertices_are_pixels_in_order_with_both_ends(walk in walks(300), tolerance_px in tolerances()) {
-        let kept = Bounded { tolerance_px }.keep(&walk);
+        let kept = Bounded::default().with_tolerance_px(tolerance_px).keep(&walk);
         prop_assert_eq!((kept[0], kept[kept.len() - 1]), (0, walk.len() - 1));
         prop_assert!(kept.windows(2).all(|pair| pair[0] < pair[1]));
     }
 
     #[test]
     fn no_pixel_is_farther_from_its_segment_than_promised(walk in walks(400), tolerance_px in tolerances()) {
-        let kept = Bounded { tolerance_px }.keep(&walk);
+        let kept = Bounded::default().with_tolerance_px(tolerance_px).keep(&walk);
         for pair in kept.windows(2) {
             for pixel in &walk[pair[0]..pair[1]] {
                 let error = distance(*pixel, walk[pair[0]], walk[pair[1]]);
@@ -124,7 +124,7 @@ proptest! {
         let published = DynamicThreshold::default().keep(&walk);
         let mut tally = ErrorTally::default();
         tally.add(&walk, &published, (false, false));
-        let ours = Bounded { tolerance_px: tally.report().max_px }.keep(&walk);
+        let ours = Bounded::default().with_tolerance_px(tally.report().max_px).keep(&walk);
         prop_assert!(ours.len() <= published.len());
     }
 
@@ -134,7 +134,7 @@ proptest! {
         tolerance_px in prop_oneof![Just(f64::NAN), Just(f64::INFINITY), Just(-1.0), 0.0..1e10_f64],
     ) {
         let pixels: Vec<Pixel> = pixels.into_iter().map(|(x, y)| Pixel::new(x, y)).collect();
-        let kept = Bounded { tolerance_px }.keep(&pixels);
+        let kept = Bounded::default().with_tolerance_px(tolerance_px).keep(&pixels);
         prop_assert_eq!(kept.is_empty(), pixels.is_empty());
         let published = DynamicThreshold::default().keep(&pixels);
         prop_assert_eq!(published.last(), kept.last());

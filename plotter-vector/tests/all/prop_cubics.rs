@@ -21,7 +21,7 @@ const ROUNDING_PX: f64 = 1e-7;
 const CHORDS_PX: f64 = 1e-3;
 
 fn bounded(tolerance_px: f64) -> Bounded {
-    Bounded { tolerance_px }
+    Bounded::default().with_tolerance_px(tolerance_px)
 }
 
 /// There and back between two heights, the arms as long as given, with noise.
@@ -162,7 +162,7 @@ proptest! {
             let handles = places.iter().map(|(x, y, curved, u, v)| curved.then(|| [place(*u, *y), place(*x, *v)]));
             drawing.push_curve(*pen, Curve { vertices, handles: handles.collect(), ..Curve::default() });
         }
-        let order = Order { effort, merge_gap_px: 0.0, ..Order::default() };
+        let order = Order::default().with_effort(effort).with_merge_gap_px(0.0);
         let ordered = order.apply(&drawing);
         prop_assert_eq!(pieces(&unsplit(&ordered, &drawing)), pieces(&drawing));
         // A length is that of chords 0.001 px off.

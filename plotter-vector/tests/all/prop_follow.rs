@@ -27,11 +27,11 @@ proptest! {
     ) {
         let length: f64 = lines.iter().flat_map(|(line, _)| line.windows(2)).map(|pair| pair[0].distance(pair[1])).sum();
         let paper = Paper::drawn(240, 200, &lines).unwrap();
-        let settings = CameraSettings { width_px: 120, height_px: 120, blur_px: blur, seed, ..CameraSettings::default() };
+        let settings = CameraSettings::default().with_width_px(120).with_height_px(120).with_blur_px(blur).with_seed(seed);
         let mut camera = SimulatedCamera::new(&paper, settings);
         let mut table = SimulatedTable::new(start, TableError { random_px, play_px, seed });
         let area = [PxPoint::new(10.0, 10.0), PxPoint::new(230.0, 190.0)];
-        let mut follower = MappingFollower::new(MappingSettings { area: Some(area), max_windows: 30_000, ..MappingSettings::default() });
+        let mut follower = MappingFollower::new(MappingSettings::default().with_area(Some(area)).with_max_windows(30_000));
         let bound = 2000.0 + 12.0 * length;
         let mut windows = 0.0;
         loop {

@@ -23,9 +23,9 @@ fn area() -> [PxPoint; 2] {
 /// Ours, the published one, and the published one with joined exits only.
 fn followers() -> [(&'static str, Box<dyn LineFollower>); 3] {
     let area = Some(area());
-    let ours = MappingSettings { area, max_windows: MOST_WINDOWS, ..MappingSettings::default() };
-    let published = PublishedSettings { area, ..PublishedSettings::for_lines(4) };
-    let connected = PublishedSettings { only_connected: true, ..published };
+    let ours = MappingSettings::default().with_area(area).with_max_windows(MOST_WINDOWS);
+    let published = PublishedSettings::for_lines(4).with_area(area);
+    let connected = published.with_only_connected(true);
     [
         ("ours", Box::new(MappingFollower::new(ours))),
         ("published", Box::new(PublishedFollower::new(published))),
@@ -83,14 +83,12 @@ fn one_colour(side: u32, level: u8) -> Gray {
 
 /// A camera over a drawing, without blur and noise.
 fn camera(strokes: &[(Vec<PxPoint>, f64)], window_px: u32) -> SimulatedCamera {
-    let settings = plotter_vector::follow::CameraSettings {
-        width_px: window_px,
-        height_px: window_px,
-        blur_px: 0.7,
-        noise_levels: 1.0,
-        rim_light: 1.0,
-        ..Default::default()
-    };
+    let settings = plotter_vector::follow::CameraSettings::default()
+        .with_width_px(window_px)
+        .with_height_px(window_px)
+        .with_blur_px(0.7)
+        .with_noise_levels(1.0)
+        .with_rim_light(1.0);
     SimulatedCamera::new(&Paper::drawn(400, 300, strokes).unwrap(), settings)
 }
 
@@ -122,13 +120,11 @@ fn no_line_in_view_is_retried_and_told_with_its_place() {
 #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn white_paper_under_a_light_that_falls_off_has_no_line() {
     for size in [120, 140, 200, 300] {
-        let settings = plotter_vector::follow::CameraSettings {
-            width_px: size,
-            height_px: size,
-            ..Default::default() // blur, noise, and light that falls to 60 %
-        };
+        // Blur, noise, and light that falls to 60 %.
+        let settings =
+            plotter_vector::follow::CameraSettings::default().with_width_px(size).with_height_px(size);
         let mut camera = SimulatedCamera::new(&Paper::drawn(400, 300, &[]).unwrap(), settings);
-        let ours = MappingSettings { area: Some(area()), ..MappingSettings::default() };
+        let ours = MappingSettings::default().with_area(Some(area()));
         let mut follower = MappingFollower::new(ours);
         let run = run(&mut follower, PxPoint::new(200.0, 150.0), |_, at| camera.window(at));
         assert!(matches!(run.end, Some(End::NoLine { .. })), "{size}: {:?} {:?}", run.end, follower.report());
@@ -215,7 +211,7 @@ fn a_filled_area_does_not_hide_the_lines_beside_it() {
     let line = vec![PxPoint::new(220.0, 60.0), PxPoint::new(340.0, 240.0)];
     strokes.push((line.clone(), 4.0));
     let mut camera = camera(&strokes, 120);
-    let settings = MappingSettings { area: Some(area()), max_windows: 4000, ..MappingSettings::default() };
+    let settings = MappingSettings::default().with_area(Some(area())).with_max_windows(4000);
     let mut follower = MappingFollower::new(settings);
     let mut at = PxPoint::new(300.0, 150.0);
     let end = loop {
@@ -235,7 +231,7 @@ fn a_filled_area_does_not_hide_the_lines_beside_it() {
 
 #[test]
 fn the_published_follower_turns_round_at_the_edge_of_the_area() {
-    let settings = PublishedSettings { area: Some(area()), ..PublishedSettings::for_lines(5) };
+    let settings = PublishedSettings::for_lines(5).with_area(Some(area()));
     let mut follower = PublishedFollower::new(settings);
     let mut camera = camera(&[(vec![PxPoint::new(-50.0, 150.0), PxPoint::new(450.0, 150.0)], 5.0)], 120);
     let run = run(&mut follower, PxPoint::new(200.0, 150.0), |_, at| camera.window(at));

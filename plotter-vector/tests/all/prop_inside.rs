@@ -2,11 +2,11 @@
 
 use crate::law_cases::cases;
 use plotter_vector::{
-    Algorithm, Colour, Drawing, Gray, Mode, Progress, PxPoint, Vectorizer,
+    Colour, Drawing, Gray, Mode, Ours, Progress, PxPoint, Vectorizer,
     areas::{AreaStyle, Areas, Hatch},
     ink::Pens,
     picture::GrayRows,
-    stroke::{Bounded, Pieces},
+    stroke::Pieces,
 };
 use proptest::prelude::*;
 
@@ -50,24 +50,21 @@ fn noise() -> impl Strategy<Value = Gray> {
 }
 
 fn vectorizers() -> impl Strategy<Value = Vectorizer> {
-    let hatch = Hatch { pitch_px: 2.0, angle_rad: 0.7, ..Hatch::default() };
-    let hatched = Vectorizer {
-        mode: Mode::Mixed,
-        max_line_px: Some(3),
-        areas: Areas { style: AreaStyle::OutlineAndHatch(hatch), pen_px: 1.5 },
-        ..Vectorizer::default()
-    };
+    let hatch = Hatch::default().with_pitch_px(2.0).with_angle_rad(0.7);
+    let areas = Areas::default().with_style(AreaStyle::OutlineAndHatch(hatch)).with_pen_px(1.5);
+    let hatched = Ours::default().with_mode(Mode::Mixed).with_max_line_px(3).with_areas(areas).into();
     let mode = prop::sample::select(vec![
         Vectorizer::default(),
-        Vectorizer { mode: Mode::Outline, ..Vectorizer::default() },
+        Vectorizer::from(Ours::default().with_mode(Mode::Outline)),
         hatched,
-        Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() },
+        Vectorizer::published(),
     ]);
     (mode, prop::sample::select(PIECES.to_vec()), prop::sample::select(vec![0.1, 0.5, 2.0])).prop_map(
-        |(vectorizer, pieces, tolerance_px)| Vectorizer {
-            pieces,
-            ours: Bounded { tolerance_px },
-            ..vectorizer
+        |(mut vectorizer, pieces, tolerance_px)| {
+            if let Some(ours) = vectorizer.ours_mut() {
+                *ours = ours.with_pieces(pieces).with_tolerance_px(tolerance_px);
+            }
+            vectorizer
         },
     )
 }
@@ -95,7 +92,10 @@ proptest! {
         let traced = vectorizer.vectorize(&gray).unwrap();
         prop_assert_eq!(outside(&traced.drawing), None, "{:?}", vectorizer);
         prop_assert!(traced.error.max_px.is_finite());
-        let by_bands = Vectorizer { band_rows, ..vectorizer };
+        let mut by_bands = vectorizer;
+        if let Some(ours) = by_bands.ours_mut() {
+            ours.band_rows = band_rows;
+        }
         let sheet = by_bands.vectorize_rows(&mut GrayRows::new(gray), &mut Progress::silent()).unwrap();
         prop_assert!(sheet.drawing == traced.drawing, "by bands of {band_rows} rows, {vectorizer:?}");
     }

@@ -49,12 +49,12 @@ fn ink(drawing: &Drawing) -> Vec<String> {
 }
 
 fn exactly_meeting() -> Order {
-    Order { merge_gap_px: 0.0, ..Order::default() }
+    Order::default().with_merge_gap_px(0.0)
 }
 
 /// From each end to the nearest stroke, and nothing changed afterwards.
 fn nearest() -> Order {
-    Order { effort: OrderEffort::Fast, budget: 0, ..Order::default() }
+    Order::default().with_effort(OrderEffort::Fast).with_budget(0)
 }
 
 /// Lines of up to 4 px, `side` times `side` of them, one to each square of 12 px.
@@ -74,9 +74,9 @@ fn scattered(side: u32) -> Drawing {
 #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_fast_shortens_the_way_of_the_nearest_up_to_25_000_strokes() {
     let way = |side, order: Order| {
-        Order { one_stroke: false, merge_gap_px: 0.0, ..order }.apply(&scattered(side)).pen_up_px()
+        order.with_one_stroke(false).with_merge_gap_px(0.0).apply(&scattered(side)).pen_up_px()
     };
-    let fast = Order { effort: OrderEffort::Fast, ..Order::default() };
+    let fast = Order::default().with_effort(OrderEffort::Fast);
     let [nearest_px, fast_px, best_px] = [nearest(), fast, Order::default()].map(|order| way(40, order));
     assert!(fast_px < 0.9 * nearest_px && best_px < fast_px, "{best_px}, {fast_px}, {nearest_px} px");
     assert_eq!(way(160, fast), way(160, nearest())); // 25,600: the nearest is all
@@ -88,7 +88,7 @@ proptest! {
     #[test]
     fn what_is_drawn_is_kept(strokes in strokes(12, 40), one_stroke in any::<bool>()) {
         let drawing = drawing_of(&strokes, 1.0);
-        let ordered = unsplit(&Order { one_stroke, ..exactly_meeting() }.apply(&drawing), &drawing);
+        let ordered = unsplit(&exactly_meeting().with_one_stroke(one_stroke).apply(&drawing), &drawing);
         prop_assert_eq!(ink(&ordered), ink(&drawing));
         prop_assert!(ordered.strokes().len() <= drawing.strokes().len());
         // Each joint saves the vertex that both strokes had.
@@ -119,7 +119,7 @@ proptest! {
     fn travel_never_grows(strokes in strokes(40, 60), fast in any::<bool>(), budget in 0_u64..3000) {
         let drawing = drawing_of(&strokes, 1.0);
         let effort = if fast { OrderEffort::Fast } else { OrderEffort::Best };
-        let ordered = Order { effort, budget, ..Order::default() }.apply(&drawing);
+        let ordered = Order::default().with_effort(effort).with_budget(budget).apply(&drawing);
         prop_assert!(ordered.pen_up_px() <= drawing.pen_up_px());
     }
 
@@ -157,7 +157,7 @@ proptest! {
         let drawing = drawing_of(&lines, 1.0);
         let mut least = f64::INFINITY;
         for budget in [0, 1000, 10_000, 1_000_000] {
-            let settings = Order { budget, one_stroke: false, ..exactly_meeting() };
+            let settings = exactly_meeting().with_budget(budget).with_one_stroke(false);
             let travel = settings.apply(&drawing).pen_up_px();
             prop_assert!(travel <= least + ROUNDING_PX);
             least = travel;
@@ -181,7 +181,7 @@ proptest! {
     fn the_next_line_is_the_nearest_one_left_from_either_end(strokes in strokes(40, 40)) {
         let lines: Vec<_> = strokes.into_iter().filter(|stroke| stroke.first() != stroke.last()).collect();
         let drawing = drawing_of(&lines, 1.0);
-        let unjoined = Order { one_stroke: false, merge_gap_px: 0.0, ..nearest() };
+        let unjoined = nearest().with_one_stroke(false).with_merge_gap_px(0.0);
         let ordered = unjoined.apply(&drawing);
         let ends: Vec<(PxPoint, PxPoint)> =
             ordered.strokes().map(|line| (line[0], line[line.len() - 1])).collect();
@@ -190,14 +190,14 @@ proptest! {
             ends[index..].iter().all(|(one, other)| pen.distance(*from) <= pen.distance(*one).min(pen.distance(*other)))
         });
         // The given order of the joined lines may be shorter.
-        let as_given = Order { effort: OrderEffort::Join, ..unjoined }.apply(&drawing);
+        let as_given = unjoined.with_effort(OrderEffort::Join).apply(&drawing);
         prop_assert!(greedy || ordered == as_given);
     }
 
     #[test]
     fn without_a_budget_the_best_is_the_fast(strokes in strokes(40, 40)) {
         let drawing = drawing_of(&strokes, 1.0);
-        prop_assert_eq!(Order { budget: 0, ..Order::default() }.apply(&drawing), nearest().apply(&drawing));
+        prop_assert_eq!(Order::default().with_budget(0).apply(&drawing), nearest().apply(&drawing));
     }
 
     #[test]
@@ -205,8 +205,8 @@ proptest! {
         // Lines only, and not joined, as above.
         let lines: Vec<_> = strokes.into_iter().filter(|stroke| stroke.first() != stroke.last()).collect();
         let drawing = drawing_of(&lines, 1.0);
-        let nearest = Order { one_stroke: false, merge_gap_px: 0.0, ..nearest() };
-        let fast = Order { budget: Order::default().budget, ..nearest };
+        let nearest = nearest().with_one_stroke(false).with_merge_gap_px(0.0);
+        let fast = nearest.with_budget(Order::default().budget);
         let [nearest_px, fast_px] = [nearest, fast].map(|order| order.apply(&drawing).pen_up_px());
         prop_assert!(fast_px <= nearest_px + ROUNDING_PX, "{fast_px} of {nearest_px} px");
     }
@@ -262,7 +262,7 @@ proptest! {
         // Letters first to last in another order than they are read.
         strokes.reverse();
         let drawing = drawing_of(&strokes, 1.0);
-        let settings = Order { lettering: Some(Lettering::default()), budget, ..exactly_meeting() };
+        let settings = exactly_meeting().with_lettering(Some(Lettering::default())).with_budget(budget);
         let ordered = unsplit(&settings.apply(&drawing), &drawing);
         prop_assert_eq!(ink(&ordered), ink(&drawing));
         for block in Lettering::default().find(&drawing) {
@@ -291,7 +291,7 @@ proptest! {
     #[test]
     fn lettering_or_not_what_is_drawn_is_kept(strokes in strokes(60, 80)) {
         let drawing = drawing_of(&strokes, 1.0);
-        let ordered = Order { lettering: Some(Lettering::default()), ..exactly_meeting() }.apply(&drawing);
+        let ordered = exactly_meeting().with_lettering(Some(Lettering::default())).apply(&drawing);
         let ordered = unsplit(&ordered, &drawing);
         prop_assert_eq!(ink(&ordered), ink(&drawing));
     }
@@ -312,7 +312,7 @@ fn four_lines_are_drawn_in_the_best_order_nearly_always() {
     for first in 0..60 {
         let mut drawing = Drawing::new(40, 40);
         (4 * first..4 * first + 4).for_each(|line| drawing.push(lines.stroke(line).iter().copied()));
-        travel += Order { one_stroke: false, ..exactly_meeting() }.apply(&drawing).pen_up_px();
+        travel += exactly_meeting().with_one_stroke(false).apply(&drawing).pen_up_px();
         least += least_travel(&drawing, &mut Vec::new());
     }
     assert!(travel <= 1.001 * least, "{travel} of {least}");
@@ -351,14 +351,14 @@ fn nothing_and_one_stroke_are_what_they_were() {
 #[test]
 fn no_effort_changes_nothing() {
     let drawing = drawing_of(&[vec![(9, 9), (8, 8)], vec![(0, 0), (1, 1)], vec![(8, 8), (7, 7)]], 1.0);
-    assert_eq!(Order { effort: OrderEffort::None, ..Order::default() }.apply(&drawing), drawing);
+    assert_eq!(Order::default().with_effort(OrderEffort::None).apply(&drawing), drawing);
 }
 
 #[test]
 fn odd_settings_are_taken_as_nothing() {
     let drawing = drawing_of(&[vec![(9, 9), (8, 8)], vec![(0, 0), (1, 1)], vec![(8, 8), (7, 7)]], 1.0);
     for merge_gap_px in [f64::NAN, f64::NEG_INFINITY, -1.0, f64::INFINITY, f64::MAX] {
-        let ordered = Order { merge_gap_px, ..Order::default() }.apply(&drawing);
+        let ordered = Order::default().with_merge_gap_px(merge_gap_px).apply(&drawing);
         assert!(ordered.pen_up_px() <= drawing.pen_up_px());
     }
 }
@@ -378,7 +378,7 @@ fn many(count: u32, stroke: impl Fn(u32, u32) -> Vec<Place>) -> Drawing {
 #[ignore = "long: .ci/run has it in release"]
 fn two_hundred_thousand_strokes_are_ordered_within_the_budget() {
     let noise = many(200_000, |x, y| vec![(x, y), (x + 40, y + y % 40)]);
-    let settings = Order { budget: 1_000_000, ..Order::default() };
+    let settings = Order::default().with_budget(1_000_000);
     let ordered = settings.apply(&noise);
     assert!(ordered.pen_up_px() < noise.pen_up_px() / 50.0);
     // Counted, not timed.

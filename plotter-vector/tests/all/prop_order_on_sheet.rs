@@ -142,7 +142,7 @@ proptest! {
         effort in efforts(),
         lift_px in prop_oneof![Just(0.0), Just(200.0)],
     ) {
-        let order = Order { merge_gap_px: 0.0, across_pens, effort, lift_px, ..Order::default() };
+        let order = Order::default().with_merge_gap_px(0.0).with_across_pens(across_pens).with_effort(effort).with_lift_px(lift_px);
         let ordered = order.apply_to(drawing.clone());
         prop_assert_eq!(ink(&unsplit_sheet(&ordered, &drawing)), ink(&drawing));
         prop_assert_eq!(marks(&ordered), marks(&drawing));
@@ -181,7 +181,7 @@ proptest! {
     ) {
         // Places of the grid beside each other, but not over its diagonals.
         let gap_mm = 1.1;
-        let order = Order { merge_gap_px: gap_mm * Order::PX_PER_MM, effort, bridges_corners, ..Order::default() };
+        let order = Order::default().with_merge_gap_px(gap_mm * Order::PX_PER_MM).with_effort(effort).with_bridges_corners(bridges_corners);
         let ordered = order.apply_to(drawing.clone());
         prop_assert_eq!(missing(&ink(&drawing), &ink(&unsplit_sheet(&ordered, &drawing))), Vec::<String>::new());
         let added = ordered.length_mm() - drawing.length_mm();
@@ -278,8 +278,11 @@ fn places_that_are_none_keep_the_order_and_all_strokes() {
         .collect();
     for effort in [OrderEffort::None, OrderEffort::Join, OrderEffort::Fast, OrderEffort::Best] {
         for merge_gap_px in [0.0, f64::NAN, 1e300] {
-            let order =
-                Order { effort, merge_gap_px, bridges_corners: true, lift_px: f64::NAN, ..Order::default() };
+            let order = Order::default()
+                .with_effort(effort)
+                .with_merge_gap_px(merge_gap_px)
+                .with_bridges_corners(true)
+                .with_lift_px(f64::NAN);
             let ordered = order.apply_to(Drawing { strokes: strokes.clone(), ..Drawing::default() });
             assert_eq!(format!("{:?}", ordered.strokes), format!("{strokes:?}"), "{order:?}");
         }

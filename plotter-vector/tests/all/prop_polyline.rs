@@ -66,7 +66,7 @@ fn strips(sites: &[PxPoint], tolerance_px: f64) -> usize {
 }
 
 fn bounded(tolerance_px: f64) -> Bounded {
-    Bounded { tolerance_px }
+    Bounded::default().with_tolerance_px(tolerance_px)
 }
 
 /// Chains of pixels that turn by no more than 45 degrees a step: where one turns back, the tolerance of the

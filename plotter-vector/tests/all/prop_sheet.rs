@@ -6,12 +6,12 @@
 )]
 
 use plotter_vector::{
-    Algorithm, Bitmap, Drawing, Gray, Mode, Pixel, Progress, Threshold, ThresholdMethod, Vectorizer,
+    Bitmap, Drawing, Gray, Mode, Ours, Pixel, Progress, Threshold, ThresholdMethod, Vectorizer,
     areas::{AreaStyle, Areas, Hatch},
     ink::Polarity,
     picture::{BitmapRows, Depth, GrayRows, RowSource},
     report::{coverage, worst_pixel},
-    stroke::{Bounded, Pieces},
+    stroke::Pieces,
 };
 use proptest::prelude::*;
 
@@ -77,7 +77,10 @@ fn assert_as_whole(vectorizer: Vectorizer, whole: &Gray, source: &mut impl RowSo
     let errors = sheet.errors.clone().unwrap();
     assert_eq!(errors.report, expected.error, "{vectorizer:?}");
     assert_eq!(errors.beyond, expected.beyond, "{vectorizer:?}");
-    let one_band = Vectorizer { band_rows: u32::MAX, ..vectorizer };
+    let mut one_band = vectorizer;
+    if let Some(ours) = one_band.ours_mut() {
+        ours.band_rows = u32::MAX;
+    }
     let at_once = one_band.vectorize_rows_with_errors(source, &mut Progress::silent()).unwrap();
     // Of ink that is wider than any line the strokes depend on the bands.
     if at_once.drawing == sheet.drawing {
@@ -122,12 +125,13 @@ proptest! {
         let ink = ink_of(&gray);
         let mode = [Mode::Centreline, Mode::Outline, Mode::Mixed][mode];
         let style = if hatched { AreaStyle::OutlineAndHatch(Hatch::default()) } else { AreaStyle::Outline };
-        let areas = Areas { style, pen_px: 2.0 };
-        let whole = Vectorizer { mode, areas, pieces, band_rows: u32::MAX, ..Vectorizer::default() };
+        let areas = Areas::default().with_style(style).with_pen_px(2.0);
+        let ours = Ours::default().with_mode(mode).with_areas(areas).with_pieces(pieces);
+        let whole = Vectorizer::from(ours.with_band_rows(u32::MAX));
         let expected = whole.trace(&ink).unwrap().drawing;
         let expected_grey = whole.vectorize(&gray).unwrap();
         for band_rows in BANDS {
-            let vectorizer = Vectorizer { band_rows, ..whole };
+            let vectorizer = Vectorizer::from(ours.with_band_rows(band_rows));
             prop_assert!(vectorizer.trace(&ink).unwrap().drawing == expected, "whole, {}", band_rows);
             prop_assert!(by_rows(vectorizer, &mut BitmapRows::new(&ink)) == expected, "{}", band_rows);
             let mut rows = GrayRows::new(gray.clone());
@@ -149,10 +153,11 @@ proptest! {
         let corners = [(12, ring), (88, ring), (88, ring + 5200), (12, ring + 5200), (12, ring)];
         lines.extend(corners.iter().zip(&corners[1..]).map(|(from, to)| (*from, *to)));
         let ink = ink_of(&drawn(100, 9500, 4.0, &lines));
-        let whole = Vectorizer { band_rows: u32::MAX, ..Vectorizer::default() };
+        let ours = Ours::default();
+        let whole = Vectorizer::from(ours.with_band_rows(u32::MAX));
         let expected = whole.trace(&ink).unwrap().drawing;
         for band_rows in [700, 2048, u32::MAX] {
-            let vectorizer = Vectorizer { band_rows, ..whole };
+            let vectorizer = Vectorizer::from(ours.with_band_rows(band_rows));
             prop_assert!(vectorizer.trace(&ink).unwrap().drawing == expected, "whole, {}", band_rows);
             prop_assert!(by_rows(vectorizer, &mut BitmapRows::new(&ink)) == expected, "{}", band_rows);
         }
@@ -174,11 +179,11 @@ proptest! {
             }
         }
         let pieces = PIECES[(seed % 3) as usize];
-        let ours = Bounded { tolerance_px: 0.7 };
-        let whole = Vectorizer { band_rows: u32::MAX, ours, pieces, ..Vectorizer::default() };
+        let ours = Ours::default().with_tolerance_px(0.7).with_pieces(pieces);
+        let whole = Vectorizer::from(ours.with_band_rows(u32::MAX));
         let expected = whole.trace(&ink).unwrap().drawing;
         for band_rows in BANDS {
-            let vectorizer = Vectorizer { band_rows, ..whole };
+            let vectorizer = Vectorizer::from(ours.with_band_rows(band_rows));
             prop_assert!(by_rows(vectorizer, &mut BitmapRows::new(&ink)) == expected, "{}", band_rows);
         }
     }
@@ -198,7 +203,7 @@ proptest! {
         gray = Gray::new(200, 700, levels).unwrap();
         let mode = [Mode::Centreline, Mode::Outline, Mode::Mixed][mode];
         for band_rows in BANDS {
-            let vectorizer = Vectorizer { mode, pieces, band_rows, ..Vectorizer::default() };
+            let vectorizer = Vectorizer::from(Ours::default().with_mode(mode).with_pieces(pieces).with_band_rows(band_rows));
             assert_as_whole(vectorizer, &gray, &mut GrayRows::new(gray.clone()));
         }
     }
@@ -218,8 +223,8 @@ proptest! {
         let polarity = [Polarity::Minority, Polarity::DarkInk, Polarity::LightInk][polarity];
         let level = ThresholdMethod::Level;
         let method = [ThresholdMethod::Otsu, ThresholdMethod::Adaptive, level(0), level(128), level(255)][method];
-        let threshold = Threshold { polarity, method, ..Threshold::default() };
-        let vectorizer = Vectorizer { threshold, pieces, band_rows: 64, ..Vectorizer::default() };
+        let threshold = Threshold::default().with_polarity(polarity).with_method(method);
+        let vectorizer = Vectorizer::from(Ours::default().with_pieces(pieces).with_band_rows(64)).with_threshold(threshold);
         for black in [inverted(&black), black] {
             assert_as_whole(vectorizer, &levels_of(&black), &mut BitmapRows::new(&black));
         }
@@ -253,7 +258,7 @@ fn sheets_without_ink_are_empty_drawings_with_no_errors() {
 #[test]
 fn the_published_algorithm_reports_its_own_errors() {
     let black = ink_of(&drawn(120, 200, 1.0, &[((10, 12), (110, 60)), ((20, 180), (60, 15))]));
-    let vectorizer = Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() };
+    let vectorizer = Vectorizer::published();
     assert_as_whole(vectorizer, &levels_of(&black), &mut BitmapRows::new(&black));
 }
 
@@ -263,8 +268,8 @@ fn the_worst_place_of_a_thin_line_is_the_one_that_is_reported() {
     let holes = [(67, 222), (75, 178), (42, 254), (143, 468), (134, 438), (197, 359), (18, 380)];
     let mut black = ink_of(&drawn(200, 500, 1.0, &[((187, 208), (101, 265))]));
     holes.iter().for_each(|&(x, y)| black.set(Pixel::new(x, y), (x + y) % 2 == 0));
-    let threshold = Threshold { polarity: Polarity::DarkInk, ..Threshold::default() };
-    let vectorizer = Vectorizer { threshold, band_rows: 64, ..Vectorizer::default() };
+    let threshold = Threshold::default().with_polarity(Polarity::DarkInk);
+    let vectorizer = Vectorizer::from(Ours::default().with_band_rows(64)).with_threshold(threshold);
     for black in [inverted(&black), black] {
         assert_as_whole(vectorizer, &levels_of(&black), &mut BitmapRows::new(&black));
     }

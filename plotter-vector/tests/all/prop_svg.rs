@@ -105,7 +105,7 @@ proptest! {
         svg(&drawing, 1.0, &mut text).unwrap();
         let curved = (0..drawing.strokes().len()).flat_map(|index| drawing.handles(index)).flatten().count();
         prop_assert_eq!(text.matches(" C").count(), curved);
-        let options = SvgOptions { tolerance_mm: READ_MM, ..SvgOptions::default() };
+        let options = SvgOptions::default().with_tolerance_mm(READ_MM);
         let read = read_svg(text.as_bytes(), &options).unwrap();
         prop_assert_eq!(read.drawing.strokes().len(), drawing.strokes().len());
         for (index, stroke) in read.drawing.strokes().enumerate() {
@@ -136,7 +136,7 @@ proptest! {
         svg(&drawing, 1.0, &mut text).unwrap();
         prop_assert_eq!(text.matches("<circle").count(), circles.len());
         // 0.0004 px; the reader makes cubic curves of arcs first.
-        let read = read_svg(text.as_bytes(), &SvgOptions { tolerance_mm: 0.001, ..SvgOptions::default() }).unwrap();
+        let read = read_svg(text.as_bytes(), &SvgOptions::default().with_tolerance_mm(0.001)).unwrap();
         prop_assert_eq!(read.drawing.strokes().len(), drawing.strokes().len());
         for (index, stroke) in read.drawing.strokes().enumerate() {
             let meant = drawing.curve(index).chords(0.001);
@@ -170,7 +170,7 @@ proptest! {
              stroke=\"#000\" stroke-dasharray=\"{}\" stroke-dashoffset=\"{offset}\"/></g></svg>",
             list(&sheet), list(&matrix), list(&dashes)
         );
-        let options = SvgOptions { max_vertices: 10_000, pens: SvgPens::ByLayer, ..SvgOptions::default() };
+        let options = SvgOptions::default().with_max_vertices(10_000).with_pens(SvgPens::ByLayer);
         if let Ok(read) = read_svg(text.as_bytes(), &options) {
             prop_assert!(read.drawing.vertices() <= 10_000);
             let tall = read.drawing.height_px() > 0;

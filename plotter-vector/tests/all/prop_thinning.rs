@@ -119,7 +119,7 @@ proptest! {
     #![proptest_config(cases(256))]
     #[test]
     fn each_component_of_ink_and_paper_keeps_its_one_skeleton(ink in picture(), method in method()) {
-        let thinned = Thinning { method, max_passes: ENOUGH_PASSES }.thin(&ink);
+        let thinned = Thinning::default().with_method(method).with_max_passes(ENOUGH_PASSES).thin(&ink);
         prop_assume!(thinned.converged);
         let (before, after) = (Framed::new(&ink), Framed::new(&thinned.skeleton));
         let (labels_before, ink_before, paper_before) = before.components();
@@ -138,7 +138,7 @@ proptest! {
 
     #[test]
     fn topology_holds_however_few_the_passes(ink in noise(), method in method(), max_passes in 0_u32..3) {
-        let thinned = Thinning { method, max_passes }.thin(&ink);
+        let thinned = Thinning::default().with_method(method).with_max_passes(max_passes).thin(&ink);
         let (_, ink_before, paper_before) = Framed::new(&ink).components();
         let (_, ink_after, paper_after) = Framed::new(&thinned.skeleton).components();
         prop_assert_eq!((ink_before, paper_before), (ink_after, paper_after));
@@ -146,7 +146,7 @@ proptest! {
 
     #[test]
     fn lines_are_one_pixel_wide(ink in picture(), method in method()) {
-        let Thinned { skeleton, converged, .. } = Thinning { method, max_passes: ENOUGH_PASSES }.thin(&ink);
+        let Thinned { skeleton, converged, .. } = Thinning::default().with_method(method).with_max_passes(ENOUGH_PASSES).thin(&ink);
         prop_assume!(converged);
         for at in skeleton.ink() {
             prop_assert!(!is_simple_and_no_end(&skeleton, at), "{at:?} could go:\n{skeleton}");
@@ -155,9 +155,9 @@ proptest! {
 
     #[test]
     fn thinning_again_changes_nothing(ink in picture(), first in method(), second in method()) {
-        let once = Thinning { method: first, max_passes: ENOUGH_PASSES }.thin(&ink);
+        let once = Thinning::default().with_method(first).with_max_passes(ENOUGH_PASSES).thin(&ink);
         prop_assume!(once.converged);
-        let twice = Thinning { method: second, max_passes: ENOUGH_PASSES }.thin(&once.skeleton);
+        let twice = Thinning::default().with_method(second).with_max_passes(ENOUGH_PASSES).thin(&once.skeleton);
         // Once for each kind of pass.
         let passes = if second == ThinningMethod::GuoHall { 2 } else { 1 };
         prop_assert_eq!((twice.passes, twice.converged), (passes, true));
@@ -166,7 +166,7 @@ proptest! {
 
     #[test]
     fn drawings_converge(ink in strokes(), method in method()) {
-        let thinning = Thinning { method, ..Thinning::default() };
+        let thinning = Thinning::default().with_method(method);
         prop_assert!(thinning.thin(&ink).converged);
     }
 
@@ -175,7 +175,7 @@ proptest! {
         seed in any::<u64>(), share in 16_u64..240, method in method(), max_passes in 0_u32..4, from in 0_u32..130,
     ) {
         const BAND: u32 = 30;
-        let thinning = Thinning { method, max_passes };
+        let thinning = Thinning::default().with_method(method).with_max_passes(max_passes);
         let context = thinning.rows_of_context();
         let whole = blotches(70, 190, share, seed);
         let first = from.saturating_sub(context);
@@ -194,7 +194,7 @@ proptest! {
             ink.ink().for_each(|at| moved.set(Pixel::new(at.x + dx, at.y + dy), true));
             moved
         };
-        let thinning = Thinning { method, max_passes: ENOUGH_PASSES };
+        let thinning = Thinning::default().with_method(method).with_max_passes(ENOUGH_PASSES);
         prop_assert_eq!(thinning.thin(&moved(&ink)).skeleton, moved(&thinning.thin(&ink).skeleton));
     }
 }
@@ -242,7 +242,7 @@ fn every_picture_of_four_by_four_keeps_its_topology() {
     }
     let (labels_before, ink_before, paper_before) = Framed::new(&all).components();
     for method in [ThinningMethod::GuoHall, ThinningMethod::ZhangSuen] {
-        let thinned = Thinning { method, ..Thinning::default() }.thin(&all);
+        let thinned = Thinning::default().with_method(method).thin(&all);
         assert!(thinned.converged);
         let after = Framed::new(&thinned.skeleton);
         let (labels_after, ink_after, paper_after) = after.components();

@@ -3,7 +3,7 @@
 use crate::law_cases::cases;
 use plotter_motion::{Point, Segment};
 use plotter_vector::{
-    Algorithm, Bitmap, Pixel, PxPoint, Vectorizer,
+    Bitmap, Ours, Pixel, PxPoint, Vectorizer,
     picture::Figures,
     raster::{OrderedTracking, Thinning},
 };
@@ -39,7 +39,7 @@ proptest! {
     #![proptest_config(cases(256))]
     #[test]
     fn every_ink_pixel_is_in_exactly_one_figure_once(ink in pictures(), min_run in 0_usize..20) {
-        let figures = OrderedTracking { min_run, ..OrderedTracking::default() }.track(&ink).unwrap();
+        let figures = OrderedTracking::default().with_min_run(min_run).track(&ink).unwrap();
         let mut all: Vec<Pixel> = ink.ink().collect();
         all.sort_unstable();
         prop_assert_eq!(sorted(&figures), all);
@@ -59,8 +59,7 @@ proptest! {
         tolerance_px in 0.05..3.0_f64,
     ) {
         let ink = Thinning::default().thin(&ink).skeleton;
-        let mut vectorizer = Vectorizer::default();
-        vectorizer.ours.tolerance_px = tolerance_px;
+        let vectorizer = Vectorizer::from(Ours::default().with_tolerance_px(tolerance_px));
         let traced = vectorizer.trace(&ink).unwrap();
         prop_assert_eq!(traced.error.pixels, ink.count());
         prop_assert!(traced.error.max_px <= tolerance_px + ROUNDING_PX);
@@ -72,8 +71,7 @@ proptest! {
         tolerance_px in 0.05..3.0_f64,
     ) {
         let ink = Thinning::default().thin(&ink).skeleton;
-        let mut vectorizer = Vectorizer::default();
-        vectorizer.ours.tolerance_px = tolerance_px;
+        let vectorizer = Vectorizer::from(Ours::default().with_tolerance_px(tolerance_px));
         let drawing = vectorizer.trace(&ink).unwrap().drawing;
         let place = |at: &PxPoint| Point::new(at.x, at.y);
         let mut segments = Vec::new();
@@ -91,7 +89,7 @@ proptest! {
 
     #[test]
     fn published_counts_every_ink_pixel_too(ink in pictures()) {
-        let published = Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() };
+        let published = Vectorizer::published();
         prop_assert_eq!(published.trace(&ink).unwrap().error.pixels, ink.count());
     }
 }

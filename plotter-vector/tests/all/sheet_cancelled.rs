@@ -2,7 +2,7 @@
 
 use core::ops::ControlFlow;
 use plotter_vector::{
-    Bitmap, DecodeError, Progress, TracedSheet, Vectorizer,
+    Bitmap, DecodeError, Ours, Progress, TracedSheet, Vectorizer,
     picture::{BitmapRows, Depth, Row, RowSource},
     trace::SheetError,
 };
@@ -50,7 +50,7 @@ fn ladder() -> Bitmap {
 fn traced_to(source: &mut Counted<'_>, most: f64) -> (u32, Result<TracedSheet, SheetError>) {
     source.given = 0;
     let mut stop = |done: f64| if done > most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-    let vectorizer = Vectorizer { band_rows: BAND_ROWS, ..Vectorizer::default() };
+    let vectorizer = Vectorizer::from(Ours::default().with_band_rows(BAND_ROWS));
     let sheet = vectorizer.vectorize_rows_with_errors(source, &mut Progress::new(&mut stop));
     (source.given, sheet)
 }

@@ -1,7 +1,7 @@
 //! A banner far longer than a picture may be wide: what is drawn on it is the same wherever it lies.
 
 use plotter_vector::{
-    DecodeError, Order, Progress, PxPoint, Vectorizer,
+    DecodeError, Order, Ours, Progress, PxPoint, Vectorizer,
     order::OrderEffort,
     picture::{Depth, MAX_SHEET_ROWS, MAX_SIDE_PX, Row, RowSource},
     trace::SheetError,
@@ -66,8 +66,8 @@ impl RowSource for Banner {
 }
 
 fn strokes(height: u32) -> Vec<Vec<PxPoint>> {
-    let order = Order { effort: OrderEffort::None, ..Order::default() };
-    let vectorizer = Vectorizer { order, ..Vectorizer::default() };
+    let order = Order::default().with_effort(OrderEffort::None);
+    let vectorizer = Vectorizer::from(Ours::default().with_order(order));
     let sheet = vectorizer.vectorize_rows(&mut Banner::new(height), &mut Progress::silent()).unwrap();
     assert_eq!(sheet.pen_px, Some(3));
     sheet.drawing.strokes().map(<[PxPoint]>::to_vec).collect()

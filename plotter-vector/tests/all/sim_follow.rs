@@ -18,29 +18,19 @@ fn table(seed: u64) -> TableError {
 
 fn settings(figure: &Figure) -> MappingSettings {
     let far = PxPoint::new(f64::from(figure.width), f64::from(figure.height));
-    MappingSettings {
-        area: Some([PxPoint::new(0.0, 0.0), far]),
-        max_windows: 20_000,
-        ..MappingSettings::default()
-    }
+    MappingSettings::default().with_area(Some([PxPoint::new(0.0, 0.0), far])).with_max_windows(20_000)
 }
 
 fn lap(figure: &Figure, error: TableError, seed: u64) -> Run {
     let start = PxPoint::new(300.0, 300.0);
-    follow_figure(
-        figure,
-        start,
-        CameraSettings { seed, ..CameraSettings::default() },
-        error,
-        settings(figure),
-    )
+    follow_figure(figure, start, CameraSettings::default().with_seed(seed), error, settings(figure))
 }
 
 /// A lap of a small figure, under a camera of 160 x 160 px.
 fn small_lap(name: &'static str, lines: &[&[(f64, f64)]], pen_px: f64) -> Run {
     let lines = lines.iter().map(|line| polyline(line)).collect();
     let figure = Figure { name, width: 260, height: 210, lines, pen_px };
-    let camera = CameraSettings { width_px: 160, height_px: 160, ..CameraSettings::default() };
+    let camera = CameraSettings::default().with_width_px(160).with_height_px(160);
     let run = follow_figure(&figure, PxPoint::new(120.0, 100.0), camera, table(3), settings(&figure));
     println!("{name}: {:?} {:?}", run.judged, run.report);
     assert_eq!(
@@ -111,7 +101,7 @@ fn from_an_end_behind_another_line_the_tool_goes_back_to_where_they_meet() {
             polyline(&[(132.5, 10.4), (128.6, 198.6)]),
         ];
         let figure = Figure { name: "end behind", width: 260, height: 210, lines, pen_px: 5.0 };
-        let camera = CameraSettings { width_px: 160, height_px: 160, ..CameraSettings::default() };
+        let camera = CameraSettings::default().with_width_px(160).with_height_px(160);
         let start = PxPoint::new(245.0, 97.0);
         let run = follow_figure(&figure, start, camera, TableError::default(), settings(&figure));
         println!("{:?} {:?}", run.judged, run.report.lifts);
@@ -130,7 +120,7 @@ fn at_the_limits_of_the_machine_the_tool_stays_on_the_line() {
         let lines =
             vec![polyline(&[(430.3, 290.2), (-4.2, 120.6)]), polyline(&[(430.3, 90.7), (-4.6, 230.4)])];
         let figure = Figure { name: "limits", width: 460, height: 340, lines, pen_px: 4.0 };
-        let camera = CameraSettings { width_px: 160, height_px: 160, seed, ..CameraSettings::default() };
+        let camera = CameraSettings::default().with_width_px(160).with_height_px(160).with_seed(seed);
         let error = TableError { random_px: 4.0, play_px: 3.0, seed };
         let run = follow_figure(&figure, PxPoint::new(230.0, 180.0), camera, error, settings(&figure));
         println!("{:?} {:?} {:?}", run.end, run.judged, run.report);
@@ -155,7 +145,7 @@ fn a_way_round_bare_walls_comes_back_to_its_beginning() {
     let figure = Figure { name: "rooms", width: 720, height: 520, lines, pen_px: 5.0 };
     let mut greatest = 0.0_f64;
     for seed in 0..2 {
-        let camera = CameraSettings { width_px: 160, height_px: 160, seed, ..CameraSettings::default() };
+        let camera = CameraSettings::default().with_width_px(160).with_height_px(160).with_seed(seed);
         let error = TableError { random_px: 1.5, play_px: 3.0, seed };
         let run = follow_figure(&figure, PxPoint::new(260.0, 230.0), camera, error, settings(&figure));
         println!("{:?} {:?} {:?}", run.end, run.judged, run.report);
@@ -176,7 +166,7 @@ fn lines_that_are_one_under_the_blur_come_to_an_end() {
         .collect();
     let figure = Figure { name: "one", width: 460, height: 340, lines: rows, pen_px: 4.0 };
     for (seed, error) in [(1, TableError::default()), (2, table(2))] {
-        let camera = CameraSettings { width_px: 240, height_px: 240, seed, ..CameraSettings::default() };
+        let camera = CameraSettings::default().with_width_px(240).with_height_px(240).with_seed(seed);
         let run = follow_figure(&figure, figure.lines[0][0], camera, error, settings(&figure));
         println!("{:?} {:?} {:?}", run.end, run.report, run.judged);
         assert!(run.report.windows < 4000, "{:?} {:?}", run.end, run.report);
@@ -264,7 +254,7 @@ fn published_laps() {
     for figure in figures() {
         let mut all = WrongChoices::default();
         for seed in from.parse::<u64>().unwrap()..to.parse().unwrap() {
-            let camera = CameraSettings { seed, ..CameraSettings::default() };
+            let camera = CameraSettings::default().with_seed(seed);
             let strokes = follow_published(&figure, figure.lines[0][0], camera, table(seed), 1.0);
             let wrong = wrong_choices(&figure, &strokes);
             all.shortcuts += wrong.shortcuts;

@@ -28,7 +28,7 @@ fn jumps(pen_px: f64, gap_px: f64, only_connected: bool) -> (usize, usize) {
     // On the sixth line: lines on both sides.
     let mut table = SimulatedTable::new(lines[5][0], TableError::default());
     // Lines of 4 px are 3 px wide where the blur is cut at level 100; runs of 3 must then stay.
-    let settings = PublishedSettings { only_connected, min_run: 3, ..PublishedSettings::default() };
+    let settings = PublishedSettings::default().with_only_connected(only_connected).with_min_run(3);
     let mut follower = PublishedFollower::new(settings);
     let mut idle = 0;
     for _ in 0..WINDOWS {

@@ -1,6 +1,6 @@
 //! Lettering four to five times as high as its pen is wide: where each stroke ends before it is undisturbed.
 
-use plotter_vector::{Bitmap, Pixel, PxPoint, Vectorizer};
+use plotter_vector::{Bitmap, Ours, Pixel, PxPoint, Vectorizer};
 
 /// Figures and letters on a field of 4 x 6, y down.
 const SIGNS: [&[&[(f64, f64)]]; 6] = [
@@ -95,8 +95,9 @@ fn lettering_is_found_where_the_pen_went() {
 #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn bands_change_nothing() {
     let ink = ink_of(&lettering(14.0));
-    let in_bands =
-        |band_rows: u32| Vectorizer { band_rows, ..Vectorizer::default() }.trace(&ink).unwrap().drawing;
+    let in_bands = |band_rows: u32| {
+        Vectorizer::from(Ours::default().with_band_rows(band_rows)).trace(&ink).unwrap().drawing
+    };
     let whole = in_bands(u32::MAX);
     for band_rows in [7, 16, 50] {
         assert_eq!(in_bands(band_rows), whole, "bands of {band_rows} rows");

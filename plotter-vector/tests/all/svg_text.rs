@@ -202,7 +202,7 @@ fn layers_and_clones_hold_texts() {
         "<g id='names'><text id='t' y='20' font-family='Boxes' font-size='10'>B</text></g>\
          <g id='more'><use xlink:href='#t' x='30'/><path d='M0 0H9' stroke='red'/></g>",
     );
-    let options = SvgOptions { pens: SvgPens::ByLayer, ..SvgOptions::default() };
+    let options = SvgOptions::default().with_pens(SvgPens::ByLayer);
     let read = read_svg_with_fonts(file.as_bytes(), &options, &fonts(&["Boxes"])).unwrap();
     assert_eq!(corners(&read)[..2], [box_at(0.0, 20.0), box_at(30.0, 20.0)]);
     assert_eq!((0..3).map(|stroke| read.drawing.pen(stroke)).collect::<Vec<_>>(), [1, 2, 2]);

@@ -8,7 +8,7 @@
 use crate::random;
 use crate::segment_distance;
 
-use plotter_vector::{Bitmap, Pixel, PxPoint, Vectorized, Vectorizer};
+use plotter_vector::{Bitmap, Ours, Pixel, PxPoint, Vectorized, Vectorizer};
 use random::Random;
 use segment_distance::segment_distance;
 
@@ -56,8 +56,7 @@ fn ink_of(lines: &[Line]) -> Bitmap {
 }
 
 fn traced(ink: &Bitmap, tolerance_px: f64) -> Vectorized {
-    let mut vectorizer = Vectorizer::default();
-    vectorizer.ours.tolerance_px = tolerance_px;
+    let vectorizer = Vectorizer::from(Ours::default().with_tolerance_px(tolerance_px));
     vectorizer.trace(ink).unwrap()
 }
 

@@ -94,7 +94,7 @@ fn strokes(method: ThinningMethod, width: u32, round: bool) -> (f64, u32, u32) {
             let beyond = (-along).max(along - LENGTH).max(0.0);
             if round { libm::hypot(beyond, across) <= half } else { beyond == 0.0 && across.abs() <= half }
         });
-        let thinned = Thinning { method, ..Thinning::default() }.thin(&ink);
+        let thinned = Thinning::default().with_method(method).thin(&ink);
         assert!(thinned.converged);
         let (low, high) = axis.extent(thinned.skeleton.ink());
         let cap = if round { half } else { 0.0 };
@@ -153,7 +153,7 @@ fn a_wedge_is_followed_to_its_point() {
             });
             let mut wedge = Bitmap::new(SIDE, SIDE).unwrap();
             largest_component(&ink).into_iter().for_each(|at| wedge.set(at, true));
-            let thinned = Thinning { method, ..Thinning::default() }.thin(&wedge);
+            let thinned = Thinning::default().with_method(method).thin(&wedge);
             let lost = axis.extent(wedge.ink()).1 - axis.extent(thinned.skeleton.ink()).1;
             worst = worst.max(lost);
             total += lost;

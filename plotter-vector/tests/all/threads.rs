@@ -3,7 +3,7 @@
 #![allow(clippy::cast_possible_truncation, reason = "a failure shows, and levels are made to fit")]
 
 use plotter_vector::{
-    Bitmap, Gray, Progress, Threshold, ThresholdMethod, Vectorizer, ink::despeckle, picture::BitmapRows,
+    Bitmap, Gray, Ours, Progress, Threshold, ThresholdMethod, Vectorizer, ink::despeckle, picture::BitmapRows,
 };
 
 #[test]
@@ -19,7 +19,7 @@ fn the_number_of_threads_changes_nothing() {
     let levels = (0..width * height).map(|i| level(i) as u8).collect();
     let gray = Gray::new(width, height, levels).unwrap();
     for method in [ThresholdMethod::Auto, ThresholdMethod::Otsu, ThresholdMethod::Adaptive] {
-        let threshold = Threshold { method, ..Threshold::default() };
+        let threshold = Threshold::default().with_method(method);
         let mut results = [1, 2, 3].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
@@ -51,7 +51,7 @@ fn a_sheet_by_rows_is_the_same_on_any_number_of_threads() {
         row + "\n"
     };
     let ink = Bitmap::from_picture(&(0..9000).map(line).collect::<String>()).unwrap();
-    let vectorizer = Vectorizer { band_rows: 500, ..Vectorizer::default() };
+    let vectorizer = Vectorizer::from(Ours::default().with_band_rows(500));
     let sheets = [1, 2, 3].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {

@@ -4,7 +4,7 @@
 use crate::bare_ink::{PENS_PX, SIDE_PX, WITHIN_PX, distance_px, drawing};
 use crate::pen_ink::ink_of;
 use plotter_vector::{
-    Bitmap, Pixel, Prefer, Progress, Vectorized, Vectorizer,
+    Bitmap, Ours, Pixel, Prefer, Progress, Vectorized, Vectorizer,
     areas::{AreaStyle, Areas, Hatch},
     picture::BitmapRows,
     report::{Spot, Spots},
@@ -31,9 +31,8 @@ fn ink_that_a_pen_leaves_bare_lies_in_a_spot_that_is_told() {
     for (seed, pen_px) in (20_000..20_024).zip(PENS_PX.into_iter().cycle()) {
         let ink: Bitmap = ink_of(SIDE_PX, &drawing(seed), pen_px);
         // One stroke a line, so that something is bare.
-        let settings =
-            Vectorizer { prefer: Prefer::Strokes, smallest_mark_px: Some(0), ..Vectorizer::default() };
-        let traced = settings.trace(&ink).unwrap();
+        let ours = Ours::default().with_prefer(Prefer::Strokes).with_smallest_mark_px(0);
+        let traced = Vectorizer::from(ours).trace(&ink).unwrap();
         let Spots { number, pixels, largest } = &traced.bare;
         assert_eq!(traced.error.max_px > WITHIN_PX, *number > 0, "seed {seed}");
         let told: u64 = largest.iter().map(|spot| spot.pixels).sum();
@@ -55,7 +54,7 @@ fn ink_that_a_pen_leaves_bare_lies_in_a_spot_that_is_told() {
             }
         }
         // By rows the same is told.
-        let settings = Vectorizer { band_rows: 48, ..settings };
+        let settings = Vectorizer::from(ours.with_band_rows(48));
         let sheet = settings.vectorize_rows_with_errors(&mut BitmapRows::new(&ink), &mut Progress::silent());
         let by_rows = sheet.unwrap().errors.unwrap();
         let whole = errors(traced);
@@ -82,8 +81,8 @@ fn squares() -> Bitmap {
 #[test]
 fn the_inside_of_an_area_that_is_outlined_is_told() {
     let traced = |style| {
-        let areas = Areas { style, pen_px: 2.5 };
-        Vectorizer { areas, ..Vectorizer::default() }.trace(&squares()).unwrap()
+        let areas = Areas::default().with_style(style).with_pen_px(2.5);
+        Vectorizer::from(Ours::default().with_areas(areas)).trace(&squares()).unwrap()
     };
     let outlined = traced(AreaStyle::Outline);
     let Spots { number, pixels, largest } = &outlined.insides;
@@ -103,7 +102,7 @@ fn the_inside_of_an_area_that_is_outlined_is_told() {
     assert!(!errors(outlined).are_within(10.0), "however much is allowed");
     // Hatched without gaps nothing is left out, with gaps the ink between the lines is.
     let hatched =
-        |pitch_px| traced(AreaStyle::OutlineAndHatch(Hatch { pitch_px, ..Hatch::default() })).insides;
+        |pitch_px| traced(AreaStyle::OutlineAndHatch(Hatch::default().with_pitch_px(pitch_px))).insides;
     assert_eq!(hatched(2.5), Spots::default());
     let gaps = hatched(8.0);
     assert!(gaps.number > 20 && (4_000..9_000).contains(&gaps.pixels), "{gaps:?}");

@@ -65,17 +65,22 @@ fn negative(gray: &Gray) -> Gray {
     Gray::new(gray.width(), gray.height(), levels).unwrap()
 }
 
-const ADAPTIVE: Threshold = Threshold {
-    polarity: Polarity::Minority,
-    method: ThresholdMethod::Adaptive,
-    window_px: 32,
-    min_contrast: 24,
-    keep_pale: false,
-};
+fn adaptive() -> Threshold {
+    Threshold::default()
+        .with_polarity(Polarity::Minority)
+        .with_method(ThresholdMethod::Adaptive)
+        .with_window_px(32)
+        .with_min_contrast(24)
+        .with_keep_pale(false)
+}
 
-const OTSU: Threshold = Threshold { method: ThresholdMethod::Otsu, ..ADAPTIVE };
+fn otsu() -> Threshold {
+    adaptive().with_method(ThresholdMethod::Otsu)
+}
 
-const AUTO: Threshold = Threshold { method: ThresholdMethod::Auto, ..ADAPTIVE };
+fn auto() -> Threshold {
+    adaptive().with_method(ThresholdMethod::Auto)
+}
 
 /// Pixels of the strokes that are missing, and pixels of paper that are ink, in units of the strokes' pixels.
 /// A pixel that is more than a quarter and less than three quarters covered may be either.
@@ -95,14 +100,14 @@ fn wrong(ink: &Bitmap) -> (f64, f64) {
 fn adaptive_and_auto_find_the_strokes_where_otsu_takes_the_shadow_for_ink() {
     for share in [0.2, 0.3, 0.5] {
         let scan = uneven(share);
-        let (_, extra) = wrong(&OTSU.apply(&scan).0);
+        let (_, extra) = wrong(&otsu().apply(&scan).0);
         assert!(extra > 0.5, "ink {share}: Otsu's extra ink is only {extra}");
-        let (missing, extra) = wrong(&AUTO.apply(&scan).0);
+        let (missing, extra) = wrong(&auto().apply(&scan).0);
         assert!(
             missing <= 0.005 && extra <= 0.005,
             "ink {share}: by itself missing {missing}, extra {extra}"
         );
-        let (missing, extra) = wrong(&ADAPTIVE.apply(&scan).0);
+        let (missing, extra) = wrong(&adaptive().apply(&scan).0);
         assert!(missing <= 0.001 && extra <= 0.001, "ink {share}: missing {missing}, extra {extra}");
     }
 }
@@ -110,13 +115,13 @@ fn adaptive_and_auto_find_the_strokes_where_otsu_takes_the_shadow_for_ink() {
 #[test]
 fn light_lines_on_an_uneven_dark_ground_are_found_as_well() {
     let scan = uneven(0.3);
-    let (ink, split) = ADAPTIVE.apply(&scan);
-    let (of_negative, split_of_negative) = ADAPTIVE.apply(&negative(&scan));
+    let (ink, split) = adaptive().apply(&scan);
+    let (of_negative, split_of_negative) = adaptive().apply(&negative(&scan));
     assert_eq!((split.unwrap().ink_is_dark, split_of_negative.unwrap().ink_is_dark), (true, false));
     assert_eq!(ink, of_negative);
     // A blueprint: light multiplies here too, but little of it comes from the ground.
     let blueprint = scan_of_a_blueprint();
-    let (ink, split) = ADAPTIVE.apply(&blueprint);
+    let (ink, split) = adaptive().apply(&blueprint);
     assert!(!split.unwrap().ink_is_dark);
     let (missing, extra) = wrong(&ink);
     assert!(missing <= 0.001 && extra <= 0.001, "missing {missing}, extra {extra}");
@@ -131,7 +136,7 @@ fn scan_of_a_blueprint() -> Gray {
 #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn paper_alone_is_an_empty_sheet() {
     for method in [ThresholdMethod::Auto, ThresholdMethod::Otsu, ThresholdMethod::Adaptive] {
-        let threshold = Threshold { method, ..Threshold::default() };
+        let threshold = Threshold::default().with_method(method);
         for level in [0.0, 128.0, 255.0] {
             assert_eq!(threshold.apply(&scan(|_, _| level)), (Bitmap::new(WIDTH, HEIGHT).unwrap(), None));
         }
@@ -140,7 +145,7 @@ fn paper_alone_is_an_empty_sheet() {
         }
     }
     // Otsu's level splits the light; in tiles there is nothing to split.
-    for threshold in [ADAPTIVE, AUTO] {
+    for threshold in [adaptive(), auto()] {
         let (ink, split) = threshold.apply(&scan(|x, y| 240.0 * light(x, y) + 6.0 * noise(x, y)));
         assert_eq!((ink.count(), split), (0, None), "{}", threshold.method);
     }
@@ -153,7 +158,7 @@ fn any_shape_of_picture_is_thresholded() {
         let gray = Gray::new(width, height, levels).unwrap();
         let level = ThresholdMethod::Level(99);
         for method in [ThresholdMethod::Auto, ThresholdMethod::Otsu, ThresholdMethod::Adaptive, level] {
-            let (ink, _) = Threshold { method, ..Threshold::default() }.apply(&gray);
+            let (ink, _) = Threshold::default().with_method(method).apply(&gray);
             let expected = (0..u64::from(width * height)).filter(|i| i % 7 == 3).count() as u64;
             assert_eq!((ink.count(), ink.width()), (expected, width), "{width} x {height}, {method}");
         }
@@ -168,7 +173,7 @@ fn of_salt_and_pepper_only_what_touches_the_strokes_is_left() {
         chance if chance > 0.9975 => 255.0,
         _ => 240.0 * light(x, y) * (1.0 - 0.7 * coverage(x, y)) + 6.0 * noise(x, y),
     });
-    let (mut ink, _) = ADAPTIVE.apply(&speckled);
+    let (mut ink, _) = adaptive().apply(&speckled);
     let pen_px = pen_width_px(&ink);
     assert_eq!(pen_px, Some(3));
     let changed = despeckle(&mut ink, smallest_mark_px(pen_px.unwrap_or(0)));
@@ -190,7 +195,9 @@ fn the_tiles_say_how_large_an_area_may_be() {
     // A black square of 100 px: more than two tiles of 32 px, less than two of 64.
     let square = scan(|x, y| if (190..290).contains(&x) && (130..230).contains(&y) { 30.0 } else { 220.0 });
     let middle = |window_px| {
-        Threshold { window_px, polarity: Polarity::DarkInk, ..ADAPTIVE }
+        adaptive()
+            .with_window_px(window_px)
+            .with_polarity(Polarity::DarkInk)
             .apply(&square)
             .0
             .get(Pixel::new(240, 180))

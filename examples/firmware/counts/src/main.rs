@@ -18,6 +18,7 @@ use core::time::Duration;
 use cortex_m_rt::entry;
 use cortex_m_semihosting::{debug, hprintln};
 use counter::{Counter, Tally};
+use plotter_motion::config::DcConfig;
 use plotter_motion::control::{
     Contouring, ContouringSettings, LineController, LineTracking, LineTrackingSettings,
 };
@@ -41,10 +42,10 @@ const TARGETS: [(i32, i32); 8] =
 /// The gantry with its simulated motors, until every target is reached or a quarter of a minute is over.
 fn gantry(counter: &Counter, machine: &Machine, name: &str, controller: impl LineController) {
     const STEP: Duration = Duration::from_micros(100);
-    let config = machine.config();
+    let dc = DcConfig::of(machine);
     let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
     let mut gantry = Gantry::with_settings(GantrySettings::of(machine), controller, gate);
-    let mut plants = [&config.x, &config.y].map(|axis| AxisPlant::new(axis, STEP.as_secs_f64()));
+    let mut plants = [&dc.x, &dc.y].map(|axis| AxisPlant::new(axis, STEP.as_secs_f64()));
     let (mut edges, mut ticks) = (Tally::default(), Tally::default());
     let mut targets = TARGETS.into_iter();
     let mut now = Duration::ZERO;

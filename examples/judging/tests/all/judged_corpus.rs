@@ -3,7 +3,7 @@
 
 use plotter_judging::corpus::{Truth, all};
 use plotter_judging::{Judgement, judge_corpus};
-use plotter_vector::{Vectorizer, decode, stroke::Bounded};
+use plotter_vector::{Ours, Vectorizer, decode};
 use std::io::Cursor;
 
 /// What a picture must reach. Where more was asked than is reached, `docs/limits.md` says why, and the bound
@@ -156,7 +156,7 @@ fn no_ink_of_lines_one_pixel_wide_lies_farther_than_was_asked() {
         picture.draw().write_to(&mut file, image::ImageFormat::Png).unwrap();
         let gray = decode(&file.into_inner()).unwrap();
         for tolerance_px in [0.5, 0.75, 1.0, 2.0] {
-            let vectorizer = Vectorizer { ours: Bounded { tolerance_px }, ..Vectorizer::default() };
+            let vectorizer = Vectorizer::from(Ours::default().with_tolerance_px(tolerance_px));
             let traced = vectorizer.vectorize(&gray).unwrap();
             let ink = vectorizer.ink(&gray);
             let found = Judgement::new(&traced.drawing, &[], &truth, Some(&ink)).unwrap().ink_max_px.unwrap();

@@ -4,6 +4,7 @@
 use super::{SecondMotor, ZAxis, ZHoming, ZPen};
 #[cfg(feature = "third-motor")]
 use crate::config::SecondMotorChoice;
+use crate::config::SteppersConfig;
 use crate::gcode::PenConvention;
 use crate::kinematics::{Backlash, Cartesian, MotorScale, ScaleError};
 use crate::planner::{AllModes, Modes};
@@ -295,7 +296,7 @@ impl StepperPlotterSettings {
     /// ```
     #[must_use]
     pub fn of(machine: &Machine, dialect: Dialect) -> Self {
-        let config = machine.config();
+        let (area, config) = (machine.config().area, SteppersConfig::of(machine));
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
         let whole = |value: f64| libm::round(value) as u16;
         let degrees = |deg: f64| u8::try_from(whole(deg)).unwrap_or(180).min(180);
@@ -303,16 +304,16 @@ impl StepperPlotterSettings {
         Self {
             dialect,
             stored: StoredSettings {
-                width_mm: whole(config.area.width_mm),
-                height_mm: whole(config.area.height_mm),
-                x_direction: config.x.stepper.inverted.into(),
-                y_direction: config.y.stepper.inverted.into(),
+                width_mm: whole(area.width_mm),
+                height_mm: whole(area.height_mm),
+                x_direction: config.x.inverted.into(),
+                y_direction: config.y.inverted.into(),
                 pen_up_deg: degrees(config.pen.up_deg),
                 pen_down_deg: degrees(config.pen.down_deg),
                 ..StoredSettings::default()
             },
-            x_steps_per_mm: config.x.stepper.steps_per_mm,
-            y_steps_per_mm: config.y.stepper.steps_per_mm,
+            x_steps_per_mm: config.x.steps_per_mm,
+            y_steps_per_mm: config.y.steps_per_mm,
             planner: PlannerSettings::of(machine),
             pen_settle: steps.pen_settle,
             laser: steps.laser,
@@ -334,7 +335,9 @@ impl StepperPlotterSettings {
     /// # use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
     /// # use plotter_motion::{Machine, MachineConfig};
     /// let mut config = MachineConfig::stepper_plotter();
-    /// config.z.enabled = true;
+    /// if let Some(steppers) = config.steppers_mut() {
+    ///     steppers.z.enabled = true;
+    /// }
     /// let machine = Machine::new(config)?;
     /// let settings = StepperPlotterSettings::of(&machine, Dialect::Grbl).with_third_motor_of(&machine);
     /// assert_eq!(settings.z.map(|z| (z.steps_per_mm, z.travel_mm)), Some((400.0, 30.0)));
@@ -344,7 +347,7 @@ impl StepperPlotterSettings {
     #[cfg(feature = "third-motor")]
     #[must_use]
     pub fn with_third_motor_of(self, machine: &Machine) -> Self {
-        let config = machine.config();
+        let config = SteppersConfig::of(machine);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
         let whole = |value: f64| libm::round(value) as u32;
         let (z, homing) = (config.z, config.homing);

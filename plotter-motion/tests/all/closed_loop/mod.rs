@@ -26,7 +26,7 @@ impl Loop {
     /// The controller that `machine` chooses, on the motors of `plant`.
     pub fn new(machine: &MachineConfig, plant: &MachineConfig) -> Self {
         let checked = Machine::new(*machine).unwrap();
-        let controller: Box<dyn LineController> = match machine.control.controller {
+        let controller: Box<dyn LineController> = match machine.dc().unwrap().control.controller {
             ControllerChoice::Published => Box::new(LineTracking::new(&checked)),
             _ => Box::new(Contouring::new(&checked)),
         };
@@ -35,8 +35,11 @@ impl Loop {
             now: Duration::ZERO,
             next_tick: controller.period(),
             controller,
-            axes: [AxisPlant::new(&plant.x, dt_s), AxisPlant::new(&plant.y, dt_s)],
-            counts_per_mm: machine.x.counts_per_mm,
+            axes: [
+                AxisPlant::new(&plant.dc().unwrap().x, dt_s),
+                AxisPlant::new(&plant.dc().unwrap().y, dt_s),
+            ],
+            counts_per_mm: machine.dc().unwrap().x.counts_per_mm,
             gate: SafetyGate::new(LimitSwitches::RELEASED, false),
             demand: Demand::NONE,
         }
@@ -161,6 +164,6 @@ pub fn draw_line(
 
 pub fn machine(choice: ControllerChoice) -> MachineConfig {
     let mut config = MachineConfig::default();
-    config.control.controller = choice;
+    config.dc_mut().unwrap().control.controller = choice;
     config
 }

@@ -106,8 +106,8 @@ impl<C: LineController> Run<C> {
 /// The board's published controller, changed.
 fn point_to_point(change: impl FnOnce(&mut PointToPointConfig)) -> (MarkingBoardSettings, ChosenController) {
     let mut config = MachineConfig::marking_board();
-    config.control.controller = ControllerChoice::Published;
-    change(&mut config.point_to_point);
+    config.dc_mut().unwrap().control.controller = ControllerChoice::Published;
+    change(&mut config.belt_mut().unwrap().point_to_point);
     let machine = Machine::new(config).unwrap();
     (MarkingBoardSettings::of(&machine), ChosenController::of(&machine))
 }

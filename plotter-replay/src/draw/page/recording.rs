@@ -47,6 +47,7 @@ const LEAST_RATE_US: u64 = 10_000;
 
 /// How a page is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PageSettings {
     /// How far the line in the page may be from the recorded one, mm; more, and said so in the page, where a
     /// long recording would not fit otherwise. A count of the usual machine by default.
@@ -56,6 +57,26 @@ pub struct PageSettings {
     pub mark_mm: f64,
     /// From what length on a silence of the line is a gap; half a second by default.
     pub gap_after: Duration,
+}
+
+impl PageSettings {
+    /// The same with another [`PageSettings::tolerance_mm`].
+    #[must_use]
+    pub const fn with_tolerance_mm(self, tolerance_mm: f64) -> Self {
+        Self { tolerance_mm, ..self }
+    }
+
+    /// The same with another [`PageSettings::mark_mm`].
+    #[must_use]
+    pub const fn with_mark_mm(self, mark_mm: f64) -> Self {
+        Self { mark_mm, ..self }
+    }
+
+    /// The same with another [`PageSettings::gap_after`].
+    #[must_use]
+    pub const fn with_gap_after(self, gap_after: Duration) -> Self {
+        Self { gap_after, ..self }
+    }
 }
 
 impl Default for PageSettings {

@@ -154,9 +154,13 @@ impl Desk {
 pub(crate) fn machine() -> Machine {
     let mut config = MachineConfig::stepper_plotter();
     (config.area.width_mm, config.area.height_mm) = (60.0, 40.0);
-    (config.homing.known_travel_mm, config.homing.max_travel_mm) = (0.0, 80.0);
-    (config.homing.fast_rate_hz, config.homing.pull_off_mm) = (4_000.0, 1.0);
-    config.pen.settle_ms = 20.0;
+    (
+        config.steppers_mut().unwrap().homing.known_travel_mm,
+        config.steppers_mut().unwrap().homing.max_travel_mm,
+    ) = (0.0, 80.0);
+    (config.steppers_mut().unwrap().homing.fast_rate_hz, config.steppers_mut().unwrap().homing.pull_off_mm) =
+        (4_000.0, 1.0);
+    config.steppers_mut().unwrap().pen.settle_ms = 20.0;
     Machine::new(config).unwrap()
 }
 

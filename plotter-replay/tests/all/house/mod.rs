@@ -22,7 +22,7 @@ pub(crate) fn house() -> Vec<PenMove> {
 /// The gantry with one of its controllers.
 pub(crate) fn machine(controller: ControllerChoice) -> Machine {
     let mut config = MachineConfig::default();
-    config.control.controller = controller;
+    config.dc_mut().unwrap().control.controller = controller;
     // The published pause of 10 ms after each byte makes a test long, and changes nothing else.
     config.serial.byte_gap_ms = 1.0;
     Machine::new(config).unwrap()

@@ -1,6 +1,6 @@
 //! A session with a simulated machine that is looked at, and asked for something, in the machine's time.
 
-use plotter_motion::{Machine, MachineConfig, PenMove, config::SerialConfig};
+use plotter_motion::{Machine, MachineConfig, PenMove};
 use plotter_replay::live::{
     Command, DrawingStep, Line, MachineLine, Recording, Session, SessionSettings, State, Telemetry,
 };
@@ -21,8 +21,7 @@ pub(crate) const FOR_EVER: Duration = Duration::from_secs(600);
 /// The gantry with a host that does not pause between bytes.
 pub(crate) fn machine() -> Machine {
     let config = MachineConfig::default();
-    Machine::new(MachineConfig { serial: SerialConfig { byte_gap_ms: 0.0, ..config.serial }, ..config })
-        .unwrap()
+    Machine::new(config.with_serial(config.serial.with_byte_gap_ms(0.0))).unwrap()
 }
 
 /// Something that is done at a look, or looked for; true once it is over.

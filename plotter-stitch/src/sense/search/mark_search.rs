@@ -24,6 +24,7 @@ const NEAR_MM: f64 = 0.8;
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default)
 )]
+#[non_exhaustive]
 pub struct SearchSettings {
     /// The optical head.
     pub optics: Optics,
@@ -37,6 +38,44 @@ pub struct SearchSettings {
     pub slow_window_mm: f64,
     /// Least number of crossings at which something must be found.
     pub least_found: usize,
+}
+
+impl SearchSettings {
+    /// The same with another [`SearchSettings::optics`].
+    #[must_use]
+    pub const fn with_optics(self, optics: Optics) -> Self {
+        Self { optics, ..self }
+    }
+
+    /// The same with another [`SearchSettings::window_mm`].
+    #[must_use]
+    pub const fn with_window_mm(self, window_mm: f64) -> Self {
+        Self { window_mm, ..self }
+    }
+
+    /// The same with another [`SearchSettings::fast_mm_s`].
+    #[must_use]
+    pub const fn with_fast_mm_s(self, fast_mm_s: f64) -> Self {
+        Self { fast_mm_s, ..self }
+    }
+
+    /// The same with another [`SearchSettings::slow_mm_s`].
+    #[must_use]
+    pub const fn with_slow_mm_s(self, slow_mm_s: f64) -> Self {
+        Self { slow_mm_s, ..self }
+    }
+
+    /// The same with another [`SearchSettings::slow_window_mm`].
+    #[must_use]
+    pub const fn with_slow_window_mm(self, slow_window_mm: f64) -> Self {
+        Self { slow_window_mm, ..self }
+    }
+
+    /// The same with another [`SearchSettings::least_found`].
+    #[must_use]
+    pub const fn with_least_found(self, least_found: usize) -> Self {
+        Self { least_found, ..self }
+    }
 }
 
 impl Default for SearchSettings {

@@ -84,7 +84,7 @@ enum Doing {
 /// # use plotter_vector::{PxPoint, follow::*};
 /// let ring: Vec<PxPoint> = (0..=60).map(|i| f64::from(i) * 0.10471975511965977).map(|a| PxPoint::new(100.0 + 25.0 * a.cos(), 100.0 + 25.0 * a.sin())).collect();
 /// let paper = Paper::drawn(200, 200, &[(ring.clone(), 5.0)])?;
-/// let window = CameraSettings { width_px: 120, height_px: 120, ..CameraSettings::default() };
+/// let window = CameraSettings::default().with_width_px(120).with_height_px(120);
 /// let mut camera = SimulatedCamera::new(&paper, window);
 /// let mut table = SimulatedTable::new(PxPoint::new(100.0, 90.0), TableError { random_px: 1.0, play_px: 3.0, seed: 1 });
 /// let mut follower = MappingFollower::new(MappingSettings::default());

@@ -45,6 +45,7 @@ use unassigned::unassigned;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Pens {
     /// As many as there are: colours that differ in the middle of lines, or whose lines to the paper differ, and
     /// that draw at least 0.3 % of the ink. A colour and a paler one of the same hue, as black and pencil, are

@@ -67,7 +67,12 @@ const OPEN_BLOCKS: usize = 32;
 /// assert_eq!((blocks[0].lines[0].height_px, blocks[0].lines[0].angle_rad), (12.0, 0.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+#[non_exhaustive]
 pub struct Lettering {
     /// Height of the smallest letters, px.
     pub min_height_px: f64,
@@ -75,6 +80,26 @@ pub struct Lettering {
     pub max_height_px: f64,
     /// Widest space between neighbours of one line, in letter heights.
     pub max_gap_heights: f64,
+}
+
+impl Lettering {
+    /// The same with another [`Lettering::min_height_px`].
+    #[must_use]
+    pub const fn with_min_height_px(self, min_height_px: f64) -> Self {
+        Self { min_height_px, ..self }
+    }
+
+    /// The same with another [`Lettering::max_height_px`].
+    #[must_use]
+    pub const fn with_max_height_px(self, max_height_px: f64) -> Self {
+        Self { max_height_px, ..self }
+    }
+
+    /// The same with another [`Lettering::max_gap_heights`].
+    #[must_use]
+    pub const fn with_max_gap_heights(self, max_gap_heights: f64) -> Self {
+        Self { max_gap_heights, ..self }
+    }
 }
 
 impl Default for Lettering {

@@ -88,12 +88,27 @@ pub enum ThinningMethod {
 /// 10 px wide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Thinning {
     /// Which algorithm.
     pub method: ThinningMethod,
     /// Most passes. A pass takes about a pixel from each side, and one more (Guo & Hall: two more) finds that
     /// nothing is left to do: lines w px wide need w / 2 + 3.
     pub max_passes: u32,
+}
+
+impl Thinning {
+    /// The same with another [`Thinning::method`].
+    #[must_use]
+    pub const fn with_method(self, method: ThinningMethod) -> Self {
+        Self { method, ..self }
+    }
+
+    /// The same with another [`Thinning::max_passes`].
+    #[must_use]
+    pub const fn with_max_passes(self, max_passes: u32) -> Self {
+        Self { max_passes, ..self }
+    }
 }
 
 /// Guo & Hall, for lines up to 60 px wide (2.5 mm at 600 dots per inch).
@@ -205,7 +220,7 @@ impl Thinning {
     ///
     /// ```
     /// # use plotter_vector::raster::Thinning;
-    /// let narrow = Thinning { max_passes: 8, ..Thinning::default() };
+    /// let narrow = Thinning::default().with_max_passes(8);
     /// assert_eq!(narrow.rows_of_context(), 8 * 9 + 56);
     /// ```
     #[must_use]

@@ -73,7 +73,7 @@ impl Bounded {
     /// let angle = |i: u32| f64::from(i).to_radians() * 3.0;
     /// let quarter = (0..=30).map(|i| PxPoint::new(30.0 + 20.0 * angle(i).sin(), 20.0 - 20.0 * angle(i).cos()));
     /// let sites: Vec<PxPoint> = line.chain(quarter).collect();
-    /// let curve = Bounded { tolerance_px: 0.2 }.arcs(&sites, false);
+    /// let curve = Bounded::default().with_tolerance_px(0.2).arcs(&sites, false);
     /// assert_eq!(curve.vertices.len(), 3);
     /// assert!(curve.vertices[1].distance(PxPoint::new(30.0, 0.0)) < 1.0);
     /// assert!(curve.bulges[0] == 0.0 && (curve.bulges[1] - 22.5_f64.to_radians().tan()).abs() < 0.02);

@@ -37,14 +37,23 @@ const ROUNDING_PX: f64 = 1e-9;
 /// # use plotter_vector::{Pixel, stroke::{Bounded, Simplify}};
 /// // A slope of 1 px in 10, as a raster has it: three stairs, never more than 0.5 px off the straight line.
 /// let stairs: Vec<Pixel> = (0..31).map(|x| Pixel::new(x, (x + 5) / 10)).collect();
-/// assert_eq!(Bounded { tolerance_px: 0.5 }.keep(&stairs), [0, 30]);
-/// assert_eq!(Bounded { tolerance_px: 0.0 }.keep(&stairs).len(), 8); // every end of a stair
+/// assert_eq!(Bounded::default().with_tolerance_px(0.5).keep(&stairs), [0, 30]);
+/// assert_eq!(Bounded::default().with_tolerance_px(0.0).keep(&stairs).len(), 8); // every end of a stair
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Bounded {
     /// Greatest distance of a pixel's centre from its segment, px. Negative and NaN act as 0: then only what
     /// lies exactly on a segment goes.
     pub tolerance_px: f64,
+}
+
+impl Bounded {
+    /// The same with another [`Bounded::tolerance_px`].
+    #[must_use]
+    pub const fn with_tolerance_px(self, tolerance_px: f64) -> Self {
+        Self { tolerance_px, ..self }
+    }
 }
 
 impl Default for Bounded {

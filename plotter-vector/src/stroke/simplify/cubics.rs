@@ -65,8 +65,8 @@ impl Bounded {
     /// # use plotter_vector::{PxPoint, stroke::Bounded};
     /// // A parabola takes one cubic curve where it takes four straight lines.
     /// let sites: Vec<PxPoint> = (0..=60).map(f64::from).map(|x| PxPoint::new(x, x * x / 60.0)).collect();
-    /// assert_eq!(Bounded { tolerance_px: 0.5 }.polyline(&sites, false).len(), 5);
-    /// let curve = Bounded { tolerance_px: 0.5 }.cubics(&sites, false);
+    /// assert_eq!(Bounded::default().with_tolerance_px(0.5).polyline(&sites, false).len(), 5);
+    /// let curve = Bounded::default().with_tolerance_px(0.5).cubics(&sites, false);
     /// assert_eq!(curve.vertices, [PxPoint::new(0.0, 0.0), PxPoint::new(60.0, 60.0)]);
     /// let near = |at: &PxPoint| (at.x * at.x / 60.0 - at.y).abs() < 0.5 * (1.0 + (at.x / 30.0).powi(2)).sqrt() + 0.1;
     /// assert!(curve.chords(0.01).iter().all(near)); // half a pixel beside it

@@ -26,6 +26,12 @@ use crate::{picture::Pixel, stroke::PreElimination};
 /// assert_eq!(DynamicThreshold::default().keep(&level), [0, 99]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+#[non_exhaustive]
 pub struct DynamicThreshold {
     /// The pass before.
     pub pre_elimination: PreElimination,
@@ -33,6 +39,26 @@ pub struct DynamicThreshold {
     pub tan_gamma: f64,
     /// The constant K (C in the publication), px.
     pub k_px: f64,
+}
+
+impl DynamicThreshold {
+    /// The same with another [`DynamicThreshold::pre_elimination`].
+    #[must_use]
+    pub const fn with_pre_elimination(self, pre_elimination: PreElimination) -> Self {
+        Self { pre_elimination, ..self }
+    }
+
+    /// The same with another [`DynamicThreshold::tan_gamma`].
+    #[must_use]
+    pub const fn with_tan_gamma(self, tan_gamma: f64) -> Self {
+        Self { tan_gamma, ..self }
+    }
+
+    /// The same with another [`DynamicThreshold::k_px`].
+    #[must_use]
+    pub const fn with_k_px(self, k_px: f64) -> Self {
+        Self { k_px, ..self }
+    }
 }
 
 impl Default for DynamicThreshold {

@@ -27,6 +27,7 @@ use crate::{
 /// same tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
 pub enum Pieces {
     /// Straight lines.
     #[default]

@@ -52,7 +52,7 @@ impl Bounded {
     /// let arm = (0..=40).map(|i| PxPoint::new(f64::from(i), noise(i)));
     /// let other = (1..=40).map(|i| PxPoint::new(40.0 + noise(i), f64::from(i)));
     /// let sites: Vec<PxPoint> = arm.chain(other).collect();
-    /// let line = Bounded { tolerance_px: 0.5 }.polyline(&sites, false);
+    /// let line = Bounded::default().with_tolerance_px(0.5).polyline(&sites, false);
     /// assert_eq!(line.len(), 3);
     /// assert!(line[1].distance(PxPoint::new(40.0, 0.0)) < 0.25); // less than the noise of one site in x and y
     /// ```

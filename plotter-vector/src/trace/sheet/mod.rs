@@ -27,7 +27,7 @@ use crate::{
         SizeError,
     },
     stroke::Drawing,
-    trace::{Algorithm, Cancelled, Doubt, Progress, VectorizeError, Vectorizer, doubt::Dirt},
+    trace::{Cancelled, Doubt, Progress, VectorizeError, Vectorizer, doubt::Dirt},
 };
 use core::fmt;
 use errors::Measure;
@@ -212,8 +212,8 @@ impl Vectorizer {
         left_out: usize,
         progress: &mut Progress<'_>,
     ) -> Result<TracedSheet, SheetError> {
-        if self.algorithm == Algorithm::Ours {
-            self.check()?;
+        if let Some(ours) = self.ours() {
+            ours.check()?;
         }
         let (width, height) = (source.width(), source.height());
         if width > MAX_SIDE_PX || height > MAX_SHEET_ROWS {
@@ -257,8 +257,10 @@ impl Vectorizer {
         }
         let mut strokes_part = progress.part(if with_errors { 0.5 } else { 0.7 });
         let fits = u64::from(width) * u64::from(height) <= MAX_PIXELS;
-        let keeps_pixels = self.keeps_pixels(pen, || threshold.has_rims(ink_pixels));
-        if keeps_pixels && fits || self.algorithm == Algorithm::Published {
+        let keeps_pixels =
+            self.ours().is_none_or(|ours| ours.keeps_pixels(pen, || threshold.has_rims(ink_pixels)));
+        let by_bands = self.ours().filter(|_| !(keeps_pixels && fits));
+        let Some(ours) = by_bands else {
             let mut ink = Bitmap::new(width, height).map_err(SheetError::Size)?;
             let mut rows = ink.rows_mut();
             for_each_row(source, &mut strokes_part, |y, row| {
@@ -271,25 +273,25 @@ impl Vectorizer {
             let (drawing, errors, removed, doubt) = self.traced_whole(ink, with_errors, left_out)?;
             progress.part(1.0).at(1, 1)?;
             return Ok(TracedSheet { drawing, errors, removed, doubt, ..found });
-        }
-        let mut sheet = SheetPipeline::new(self, (width, height), (pen, keeps_pixels), &threshold);
+        };
+        let mut sheet = SheetPipeline::new(ours, (width, height), (pen, keeps_pixels), &threshold);
         for_each_row(source, &mut strokes_part, |_, row| sheet.push(row))?;
         let Finished { strokes, area_rows, removed } = sheet.finish()?;
         let mut drawing = found.drawing;
         strokes.into_iter().for_each(|stroke| drawing.push_curve(1, within(stroke, width, height)));
-        let smallest_px = self.smallest_mark_px(pen.width_px);
-        let opening = self.opening(pen);
+        let smallest_px = ours.smallest_mark_px(pen.width_px);
+        let opening = ours.opening(pen);
         let measure = Measure {
             threshold: &threshold,
             smallest_px,
-            band_rows: self.band_rows,
-            areas: AreaPen { is_raster: keeps_pixels, ..self.area_pen(&opening) },
-            within_px: self.ours.tolerance_px,
+            band_rows: ours.band_rows,
+            areas: AreaPen { is_raster: keeps_pixels, ..ours.area_pen(&opening) },
+            within_px: ours.tolerance_px,
             area_rows: &area_rows,
         };
-        if self.adds_strokes() {
+        if ours.adds_strokes() {
             let mut bare_part = progress.part(if with_errors { 0.5 } else { 1.0 });
-            for stroke in measure.bare(source, &drawing, |drawn| self.bare_ink(drawn), &mut bare_part)? {
+            for stroke in measure.bare(source, &drawing, |drawn| ours.bare_ink(drawn), &mut bare_part)? {
                 drawing.push_curve(1, within(stroke, width, height));
             }
         }

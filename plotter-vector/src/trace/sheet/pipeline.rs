@@ -15,7 +15,7 @@ use crate::{
     ink::{Despeckled, context_rows},
     picture::{Gray, Row},
     stroke::Curve,
-    trace::Vectorizer,
+    trace::Ours,
 };
 use core::ops::Range;
 
@@ -28,7 +28,7 @@ const FEWEST_ROWS: u32 = 384;
 
 /// The strokes of a sheet that is on its way.
 pub(super) struct SheetPipeline<'a> {
-    settings: &'a Vectorizer,
+    settings: &'a Ours,
     threshold: &'a RowThreshold,
     centring: Centring,
     smallest_px: u32,
@@ -68,7 +68,7 @@ pub(super) struct Finished {
 impl<'a> SheetPipeline<'a> {
     /// Before the first row; `keeps_pixels` follows the lines pixel by pixel.
     pub(super) fn new(
-        settings: &'a Vectorizer,
+        settings: &'a Ours,
         (width, height): (u32, u32),
         (pen, keeps_pixels): (Pen, bool),
         threshold: &'a RowThreshold,
@@ -293,9 +293,9 @@ impl<'a> SheetPipeline<'a> {
 mod tests {
     use super::*;
     use crate::{
-        ink::Survey,
+        ink::{Survey, Threshold},
         picture::{Bitmap, Pixel},
-        stroke::{Bounded, PxPoint},
+        stroke::PxPoint,
     };
 
     /// Rounding of what is promised exactly, px.
@@ -336,8 +336,8 @@ mod tests {
         ink
     }
 
-    fn strokes(ink: &Bitmap, settings: &Vectorizer) -> Vec<Curve> {
-        let mut survey = Survey::checked(settings.threshold, ink.width(), ink.height());
+    fn strokes(ink: &Bitmap, settings: &Ours) -> Vec<Curve> {
+        let mut survey = Survey::checked(Threshold::default(), ink.width(), ink.height());
         (0..ink.height()).for_each(|y| survey.push_row(Row::Bits(ink.row(y))));
         let threshold = survey.finish().unwrap();
         let mut work =
@@ -361,7 +361,7 @@ mod tests {
     fn every_pixel_of_a_hairline_lies_within_the_tolerance_whatever_the_bands() {
         for (seed, tolerance_px) in (1..).zip([0.5, 0.75, 1.0, 2.0, 0.5]) {
             let ink = hairlines(seed * 0x9e37_79b9);
-            let settings = Vectorizer { ours: Bounded { tolerance_px }, ..Vectorizer::default() };
+            let settings = Ours::default().with_tolerance_px(tolerance_px);
             let found = strokes(&ink, &settings);
             let far = |at: Pixel| {
                 let to_stroke = |stroke: &Curve| distance_px(at.into(), &stroke.vertices);
@@ -370,7 +370,7 @@ mod tests {
             let worst_px = ink.ink().map(far).fold(0.0, f64::max);
             assert!(worst_px <= tolerance_px + ROUNDING_PX, "{tolerance_px}: {worst_px}");
             for band_rows in [16, 130] {
-                assert!(strokes(&ink, &Vectorizer { band_rows, ..settings }) == found, "{band_rows}");
+                assert!(strokes(&ink, &settings.with_band_rows(band_rows)) == found, "{band_rows}");
             }
         }
     }

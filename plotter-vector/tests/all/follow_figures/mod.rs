@@ -230,7 +230,7 @@ pub fn follow_published(
     let mut camera = SimulatedCamera::new(&figure.paper(), camera);
     let mut table = SimulatedTable::new(start, table);
     // It takes pictures until there is a line, as published.
-    let settings = PublishedSettings { max_tries: u32::MAX, ..PublishedSettings::default() };
+    let settings = PublishedSettings::default().with_max_tries(u32::MAX);
     let mut follower = PublishedFollower::new(settings);
     let wanted_px: f64 = laps * figure.lines.iter().map(|line| length(line)).sum::<f64>();
     // A window takes the tool some 100 px on; one that has needed twice as many windows is stuck.
