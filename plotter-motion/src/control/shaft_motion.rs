@@ -18,6 +18,9 @@ pub(super) struct ShaftMotion {
     overrun: f32,
     /// How far `speed` may be off, counts/s, since the last edge said how fast it was.
     speed_doubt: f32,
+    /// The same of a shaft that would have met an edge if it were so much faster: its place is known by that.
+    /// What holds a shaft and lets it go is no even motion, so a drive goes by `speed_doubt`.
+    even_doubt: f32,
     /// How far `offset` may be off, counts, since the last edge said where it was.
     place_doubt: f32,
     /// Where it was when that was last known, relative to `count`: at an edge, or at rest.
@@ -55,6 +58,7 @@ impl ShaftMotion {
             since_correction_s: 0.0,
             overrun: 0.0,
             speed_doubt: 0.0,
+            even_doubt: 0.0,
             place_doubt: 0.0,
             from: offset,
             up: false,
@@ -120,7 +124,8 @@ impl ShaftMotion {
 
     /// Its acceleration may be off by so much, counts/s^2, for `dt_s`.
     pub(super) fn doubts(&mut self, accel: f32, dt_s: f32) {
-        self.place_doubt += (self.speed_doubt + 0.5 * accel * dt_s) * dt_s;
+        self.place_doubt += (self.even_doubt + 0.5 * accel * dt_s) * dt_s;
+        self.even_doubt += accel * dt_s;
         self.speed_doubt += accel * dt_s;
     }
 
@@ -163,11 +168,10 @@ impl ShaftMotion {
             Decoding::X1 => (-0.5, 1.0),
             Decoding::X2 | Decoding::X4 => (0.0, 1.0),
         };
-        // Sped up evenly it would have left its interval by now; by pulses it is moved in jerks. Only with x1 is
-        // it asked how well the place of a rest is known.
-        if matches!(self.decoding, Decoding::X1) && !self.in_jerks {
+        // Sped up evenly it would have left its interval by now; by pulses it is moved in jerks.
+        if !self.in_jerks {
             let evenly = 2.0 * (most - least) / self.since_correction_s.max(SHORTEST_S);
-            self.speed_doubt = self.speed_doubt.min(evenly);
+            self.even_doubt = self.even_doubt.min(evenly);
         }
         let inside = self.offset.clamp(least, most);
         let beyond = self.offset - inside;
@@ -191,10 +195,10 @@ impl ShaftMotion {
     ///
     /// So near to an edge it may stand on either side of it, and meet it however it goes on.
     pub(super) const fn stands(&mut self, dry_friction: f32) {
-        if self.speed_doubt > 0.0 {
-            self.place_doubt += self.speed_doubt * self.speed_doubt / (2.0 * dry_friction);
+        if self.even_doubt > 0.0 {
+            self.place_doubt += self.even_doubt * self.even_doubt / (2.0 * dry_friction);
         }
-        (self.speed, self.speed_doubt, self.from) = (0.0, 0.0, self.offset);
+        (self.speed, self.speed_doubt, self.even_doubt, self.from) = (0.0, 0.0, 0.0, self.offset);
         if matches!(self.decoding, Decoding::X1) {
             // It came from below to the upper end, and from above to the lower one: from the other side it
             // would have met them.
@@ -242,6 +246,7 @@ impl ShaftMotion {
         self.speed += share * difference * speed_gain;
         (self.since_correction_s, self.overrun) = (0.0, 0.0);
         self.speed_doubt *= 0.5;
+        self.even_doubt *= 0.5;
         fading
     }
 
@@ -308,7 +313,7 @@ mod tests {
                 motion.doubts(3.0 * FRICTION, 4e-4);
                 motion.without_edge(FRICTION);
             }
-            motion.speed_doubt
+            motion.even_doubt
         };
         assert!((slow(false) - 2.0 / 14e-3).abs() < 1.0, "{}", slow(false));
         // pulses may have left it standing till the last one
