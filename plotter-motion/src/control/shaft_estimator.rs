@@ -114,7 +114,7 @@ impl ShaftEstimator {
 
     /// The same of a shaft that pulses move.
     pub(super) const fn in_jerks(mut self) -> Self {
-        self.motion.in_jerks = true;
+        self.motion.in_jerks();
         self
     }
 

@@ -32,8 +32,9 @@ pub(super) struct ShaftMotion {
     /// of it.
     at_upper: bool,
     at_lower: bool,
-    /// Whether pulses move it, between which it slows down or stands.
-    pub(super) in_jerks: bool,
+    /// Twice the way that it can have gone without an edge, counts: from rest and sped up evenly it is then so
+    /// much faster than in the mean. No bound where pulses move it, between which it slows down or stands.
+    even_counts: f32,
 }
 
 /// How much of a difference a filter takes, by the time since it took the last.
@@ -65,8 +66,13 @@ impl ShaftMotion {
             down: false,
             at_upper: false,
             at_lower: false,
-            in_jerks: false,
+            even_counts: 2.0,
         }
+    }
+
+    /// Pulses move it, from jerk to jerk.
+    pub(super) const fn in_jerks(&mut self) {
+        self.even_counts = f32::INFINITY;
     }
 
     /// How far the shaft is from the resting place of `count`, in counts.
@@ -168,10 +174,10 @@ impl ShaftMotion {
             Decoding::X1 => (-0.5, 1.0),
             Decoding::X2 | Decoding::X4 => (0.0, 1.0),
         };
-        // Sped up evenly it would have left its interval by now; by pulses it is moved in jerks.
-        if !self.in_jerks {
-            let evenly = 2.0 * (most - least) / self.since_correction_s.max(SHORTEST_S);
-            self.even_doubt = self.even_doubt.min(evenly);
+        // Sped up evenly it would have left its interval by now.
+        let evenly = self.even_counts / self.since_correction_s;
+        if self.even_doubt > evenly {
+            self.even_doubt = evenly;
         }
         let inside = self.offset.clamp(least, most);
         let beyond = self.offset - inside;
@@ -305,7 +311,10 @@ mod tests {
     #[test]
     fn a_slow_shaft_is_known_to_be_slow() {
         let slow = |in_jerks| {
-            let mut motion = ShaftMotion { in_jerks, ..ShaftMotion::at_rest(Decoding::X1, 900.0) };
+            let mut motion = ShaftMotion::at_rest(Decoding::X1, 900.0);
+            if in_jerks {
+                motion.in_jerks();
+            }
             motion.enter(Direction::Plus);
             motion.offset = 0.3;
             for _ in 0..35 {
