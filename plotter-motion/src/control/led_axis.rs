@@ -24,9 +24,12 @@ impl LedAxis {
     /// A shaft at rest in the middle of count 0.
     pub(super) fn new(settings: ShaftSettings) -> Self {
         let ShaftSettings { model, decoding, observer_rad_s, pwm_steps, coasting, is_loose } = settings;
-        let estimator = ShaftEstimator::with_model(model, decoding, observer_rad_s);
+        let mut estimator = ShaftEstimator::with_model(model, decoding, observer_rad_s);
+        if coasting.is_some() {
+            estimator.in_jerks();
+        }
         Self {
-            estimator: if coasting.is_some() { estimator.in_jerks() } else { estimator },
+            estimator,
             applied: Duty::ZERO,
             coasting,
             estimated_at: Duration::ZERO,

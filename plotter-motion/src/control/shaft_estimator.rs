@@ -112,10 +112,9 @@ impl ShaftEstimator {
         }
     }
 
-    /// The same of a shaft that pulses move.
-    pub(super) const fn in_jerks(mut self) -> Self {
+    /// Pulses move the shaft.
+    pub(super) const fn in_jerks(&mut self) {
         self.motion.in_jerks();
-        self
     }
 
     pub(super) const fn motion(&self) -> &ShaftMotion {

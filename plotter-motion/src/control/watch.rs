@@ -106,6 +106,10 @@ pub(super) struct Watch {
 /// Edges whose time is looked at together: then one that is late by itself does not matter.
 const ROW: u8 = 4;
 
+/// What brakes a shaft at the most, as so many times what the whole supply does at rest: twice that brakes a
+/// motor at its greatest speed, friction adds to it, and all of it may be known badly.
+const MOST_BRAKING: f32 = 6.0;
+
 impl Watch {
     pub(super) const NOTHING: Self = Self {
         slowest: [0.0; 2],
@@ -225,12 +229,13 @@ impl Watch {
         #[expect(clippy::cast_precision_loss, reason = "1 or -1")]
         let sense = direction.sign() as f32;
         let since_s = self.since_edge_s;
+        let most_braking = MOST_BRAKING * most_accel;
         if sense == self.sense {
-            self.looks_for_pairs(since_s);
+            self.looks_for_pairs(since_s, most_braking);
             self.goes_on(since_s, braking, doubt);
         } else {
             self.pairs = 0;
-            self.turns(since_s, most_accel);
+            self.turns(since_s, most_braking);
         }
         self.sense = sense;
         if self.tries > 0 {
@@ -239,8 +244,9 @@ impl Watch {
         (self.slowest, self.since_edge_s, self.tries, self.pause_s) = ([0.0; 2], 0.0, 0, 0.0);
     }
 
-    /// Whether edges come two by two, as where each is counted twice: no shaft turns by jerks like these.
-    fn looks_for_pairs(&mut self, since_s: f32) {
+    /// Whether edges come two by two, as where each is counted twice. A shaft that is hard to move turns by jerks,
+    /// too, but from one to the next it has to come to rest.
+    fn looks_for_pairs(&mut self, since_s: f32, most_braking: f32) {
         // A loop that looks for edges tells some two by two as well. One that looks each tenth of a
         // millisecond, as contouring wants it, makes no gaps of so many seconds.
         const LEAST_GAP_S: f32 = 4e-4;
@@ -250,7 +256,9 @@ impl Watch {
         let [short_s, long_s] =
             if since_s < self.before_s { [since_s, self.before_s] } else { [self.before_s, since_s] };
         self.before_s = since_s;
-        let is_pair = UNEVEN * short_s < long_s && long_s > LEAST_GAP_S;
+        // So fast it goes on for more than a count, whatever brakes it.
+        let is_fast = most_braking * short_s * short_s < 0.5;
+        let is_pair = is_fast && UNEVEN * short_s < long_s && long_s > LEAST_GAP_S;
         self.pairs = if is_pair { self.pairs + 1 } else { 0 };
         if self.pairs >= SURE_EDGES {
             (self.pairs, self.stopped) = (0, Some(Trouble::Encoder));
@@ -301,17 +309,39 @@ impl Watch {
     }
 
     /// An edge the other way.
-    fn turns(&mut self, since_s: f32, most_accel: f32) {
-        // Twice the supply brakes a motor at its greatest speed, and friction adds to that.
-        const MOST: f32 = 6.0;
+    fn turns(&mut self, since_s: f32, most_braking: f32) {
         let [_, before_s, _] = self.times_s;
         if before_s > 0.0 {
             let speed = f32::from(ROW) / before_s;
-            if speed > MOST * most_accel * (since_s + 0.5 * before_s) {
+            if speed > most_braking * (since_s + 0.5 * before_s) {
                 self.stopped = Some(Trouble::Encoder);
             }
         }
         (self.times_s, self.edges, self.drives) = ([0.0; 3], 0, [0.0; 2]);
         (self.against_s, self.taken, self.against) = (0.0, 0.0, 0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Edges two by two, `short_s` apart and each pair 40 ms after the last, of a motor that brakes with 1e5
+    /// counts/s^2 at the supply.
+    fn in_pairs(short_s: f32) -> Option<Trouble> {
+        let mut watch = Watch::NOTHING;
+        for edge in 0..40 {
+            watch.pass(if edge % 2 == 0 { 0.04 } else { short_s }, 0.0, 1e4);
+            watch.edge(Direction::Plus, 1e5, 1e4, 0.3);
+        }
+        watch.trouble()
+    }
+
+    #[test]
+    fn a_shaft_that_turns_by_jerks_has_no_bad_encoder() {
+        // 250 counts/s, from which six times the supply brakes within 0.05 counts
+        assert_eq!(in_pairs(4e-3), None);
+        // 10,000 counts/s: that takes 83 counts
+        assert_eq!(in_pairs(1e-4), Some(Trouble::Encoder));
     }
 }
