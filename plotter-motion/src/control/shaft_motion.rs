@@ -306,8 +306,8 @@ mod tests {
         assert_eq!(count_after_an_edge_down(rests_at(0.56), 0.4), 1);
     }
 
-    /// Pushed with about what friction holds, a shaft takes 14 ms to its edge: what its acceleration may be off
-    /// by would make 4200 counts/s of that, and it had passed many edges by then.
+    /// Pushed with about what friction holds, a shaft takes 14 ms to its edge: what its acceleration may be
+    /// off by would make 4200 counts/s of that, and it had passed many edges by then.
     #[test]
     fn a_slow_shaft_is_known_to_be_slow() {
         let slow = |in_jerks| {

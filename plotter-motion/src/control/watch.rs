@@ -244,8 +244,8 @@ impl Watch {
         (self.slowest, self.since_edge_s, self.tries, self.pause_s) = ([0.0; 2], 0.0, 0, 0.0);
     }
 
-    /// Whether edges come two by two, as where each is counted twice. A shaft that is hard to move turns by jerks,
-    /// too, but from one to the next it has to come to rest.
+    /// Whether edges come two by two, as where each is counted twice. A shaft that is hard to move turns by
+    /// jerks, too, but from one to the next it has to come to rest.
     fn looks_for_pairs(&mut self, since_s: f32, most_braking: f32) {
         // A loop that looks for edges tells some two by two as well. One that looks each tenth of a
         // millisecond, as contouring wants it, makes no gaps of so many seconds.

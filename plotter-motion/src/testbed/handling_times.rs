@@ -4,8 +4,8 @@ use core::time::Duration;
 
 /// How long the processor works on each thing, from when it begins until the motors are driven by the outcome.
 ///
-/// What comes while it works waits, edges before a run of the loop, as in a firmware whose interrupts put edges
-/// into a queue with their times; a run of the loop is told the time at which it begins.
+/// What comes while it works waits, edges before a run of the loop, as in a firmware whose interrupts put
+/// edges into a queue with their times; a run of the loop is told the time at which it begins.
 ///
 /// ```
 /// use plotter_motion::testbed::HandlingTimes;

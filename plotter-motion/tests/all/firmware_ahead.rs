@@ -759,9 +759,9 @@ fn row(made: &[Made]) -> u64 {
     sum
 }
 
-/// The drawings on which planning is measured as `examples/firmware/counts/check --drawings` wants them, in the
-/// file that `PLOTTER_DRAWINGS` names: a line with a name and what [`row`] is in each mode, then the drawing's
-/// lines.
+/// The drawings on which planning is measured as `examples/firmware/counts/check --drawings` wants them, in
+/// the file that `PLOTTER_DRAWINGS` names: a line with a name and what [`row`] is in each mode, then the
+/// drawing's lines.
 #[test]
 #[ignore = "by hand: examples/firmware/counts/check --drawings runs it"]
 fn the_drawings_for_a_board() {

@@ -156,8 +156,8 @@ enum Drive {
     Counted,
 }
 
-/// Instructions of an edge and of a run of the loop, the most of them that `examples/firmware/counts/check` lets
-/// through, and how many a Cortex-M4 at 100 MHz does a second: one a cycle, two for what it loads.
+/// Instructions of an edge and of a run of the loop, the most of them that `examples/firmware/counts/check`
+/// lets through, and how many a Cortex-M4 at 100 MHz does a second: one a cycle, two for what it loads.
 const COUNTED: [u32; 3] = [900, 10_300, 100_000_000];
 
 impl Bench {
