@@ -85,7 +85,7 @@ pub struct OneBeltConfig {
     pub point_to_point: PointToPointConfig,
 }
 
-/// Two stepper motors, each of which moves an axis, with the pen, the laser and the switches of their plotter.
+/// Two stepper motors, each of which moves an axis, and the pen, laser and switches of their plotter.
 ///
 /// The default is the documented stepper plotter's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

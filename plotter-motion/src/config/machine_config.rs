@@ -217,8 +217,8 @@ pub struct SyncStopConfig {
 
 /// An axis of a DC motor, or one of the two motors of a belt.
 ///
-/// It and its parts are written out as constants of a firmware (feature `build`), so they can be made field by
-/// field outside of this crate, too.
+/// It and its parts are written out as constants of a firmware (feature `build`), so they can be made field
+/// by field outside of this crate, too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",

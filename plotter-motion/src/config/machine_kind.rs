@@ -70,9 +70,9 @@ impl Machine {
         self.config().drive.kind()
     }
 
-    /// Refuses a machine of another kind than `wanted`. Whoever builds on one kind asks this first, or for its
-    /// motors by [`Machine::gantry`], [`Machine::belt`] or [`Machine::steppers`]: settings that are made `of` a
-    /// machine of another kind are those of the documented machine of their own.
+    /// Refuses a machine of another kind than `wanted`. Whoever builds on one kind asks this first, or for
+    /// its motors by [`Machine::gantry`], [`Machine::belt`] or [`Machine::steppers`]: settings that are made
+    /// `of` a machine of another kind are those of the documented machine of their own.
     ///
     /// `user` is what needs that kind, for the message.
     ///

@@ -32,8 +32,8 @@ pub(super) struct ShaftMotion {
     /// of it.
     at_upper: bool,
     at_lower: bool,
-    /// Twice the way that it can have gone without an edge, counts: from rest and sped up evenly it is then so
-    /// much faster than in the mean. No bound where pulses move it, between which it slows down or stands.
+    /// Twice a count, the way from edge to edge: sped up evenly from rest it is at its end twice as fast as in
+    /// the mean. No bound where pulses move it, between which it slows down or stands.
     even_counts: f32,
 }
 

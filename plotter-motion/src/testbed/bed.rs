@@ -219,8 +219,8 @@ struct Edge {
     direction: Direction,
 }
 
-/// Edges that wait at most: more than this of both motors in a time step are no motors any more, and a board's
-/// queue has as many places.
+/// Edges that wait at most, twice as many as in the firmware's queue: those of two motors in a longer time than any
+/// run of a loop takes. One that finds no room is lost, and shows in [`Figures::lost_counts`].
 const MOST_EDGES: usize = 64;
 
 impl<'a, C: LineController + ?Sized> Run<'a, C> {
@@ -245,12 +245,12 @@ impl<'a, C: LineController + ?Sized> Run<'a, C> {
 
     fn start(&mut self, target: StepPoint) {
         let demand = self.controller.start(self.now, target);
-        self.apply(demand, self.busy_until);
+        self.apply(self.now, self.busy_until.max(self.now), demand);
     }
 
-    /// Drives the motors so from a time on.
-    fn apply(&mut self, demand: Demand, from: Duration) {
-        self.take_drive(from);
+    /// A demand that is made `now` drives the motors from a later time on.
+    fn apply(&mut self, now: Duration, from: Duration, demand: Demand) {
+        self.take_drive(now);
         let drive = self.gate.pass(demand).kept();
         self.next_drive = Some((from, drive));
         self.controller.applied(drive);
@@ -283,8 +283,8 @@ impl<'a, C: LineController + ?Sized> Run<'a, C> {
         energy_j
     }
 
-    /// Begins with what the processor is to do next, an edge before a run of the loop where both wait; whether
-    /// there was something by now.
+    /// Begins with what the processor is to do next, an edge before a run of the loop where both wait; says
+    /// whether there was something by now.
     fn handle(&mut self) -> bool {
         let next_edge = self.edges.first().copied().flatten();
         // An edge is known to the microsecond, as a timer has it.
@@ -323,7 +323,7 @@ impl<'a, C: LineController + ?Sized> Run<'a, C> {
     /// The processor has begun with something at a time, and works on it so long.
     fn worked(&mut self, at: Duration, takes: Duration, demand: Demand) {
         self.busy_until = at.saturating_add(takes);
-        self.apply(demand, self.busy_until);
+        self.apply(at, self.busy_until, demand);
     }
 
     /// By how many whole counts the controller is wrong about where the worse shaft is.

@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-/// How long the processor works on each thing, from when it begins until the motors are driven by the outcome.
+/// How long the processor works on a thing, from when it begins until the motors are driven by the outcome.
 ///
 /// What comes while it works waits, edges before a run of the loop, as in a firmware whose interrupts put
 /// edges into a queue with their times; a run of the loop is told the time at which it begins.
@@ -10,10 +10,10 @@ use core::time::Duration;
 /// ```
 /// use plotter_motion::testbed::HandlingTimes;
 /// use core::time::Duration;
-/// // A Cortex-M4 at 100 MHz that takes an instruction a cycle: 879 for an edge, 10,034 for a run at most.
-/// let counted = HandlingTimes::of_instructions(879, 10_034, 100_000_000);
-/// assert_eq!(counted.edge, Duration::from_nanos(8_790));
-/// assert_eq!(counted.run, Duration::from_nanos(100_340));
+/// // A processor of 100 MHz that takes a cycle for each instruction, 900 for an edge and 10,300 for a run.
+/// let counted = HandlingTimes::of_instructions(900, 10_300, 100_000_000);
+/// assert_eq!(counted.edge, Duration::from_micros(9));
+/// assert_eq!(counted.run, Duration::from_micros(103));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(

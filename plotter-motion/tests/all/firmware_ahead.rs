@@ -743,7 +743,7 @@ fn every_step_of_the_measured_drawings_is_at_its_tick() {
     }
 }
 
-/// A row of steps and of the times between them as a number, as `examples/firmware/counts` reckons it: FNV-1a.
+/// A row of steps and the times between them as a number, by FNV-1a as in `examples/firmware/counts`.
 /// Where a machine stood it may begin again whenever its main loop is there.
 fn row(made: &[Made]) -> u64 {
     let (mut sum, mut last_us) = (0xCBF2_9CE4_8422_2325_u64, None);

@@ -1,4 +1,4 @@
-//! [`SheetConfig`]: what a machine's file says of how drawings longer than the table are drawn frame by frame.
+//! [`SheetConfig`]: what a machine's file says of drawings that are longer than the table.
 
 use plotter_motion::config::{Bound, ConfigError, Key, MachineConfig, Section};
 
